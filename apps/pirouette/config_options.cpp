@@ -1,0 +1,132 @@
+#include "config_options.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <cstdlib>
+
+#include "pirouette/config/toml.hpp"
+
+namespace pirouette::app {
+namespace {
+
+std::string quoted(const std::string& text) { return '"' + text + '"'; }
+
+/// Shortest text that reads back as the same number; TOML takes it.
+std::string as_toml(double number) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+/// "0.1,-0.2" as "[0.1, -0.2]"; absent when it is not two finite numbers.
+std::optional<std::string> pair_as_toml(const std::string& text) {
+  const char* next = text.c_str();
+  std::string list;
+  for (const char terminator : {',', '\0'}) {
+    char* end = nullptr;
+    const double number = std::strtod(next, &end);
+    if (end == next || *end != terminator || !std::isfinite(number)) return std::nullopt;
+    list += (list.empty() ? "[" : ", ") + as_toml(number);
+    next = end + 1;
+  }
+  return list + "]";
+}
+
+}  // namespace
+
+void ConfigOptions::add_common(CLI::App& command) {
+  command.add_option("--config", file_, "TOML file of parameters, such as the run.toml of a run")
+      ->type_name("FILE");
+  command.add_option("--set", sets_, "One parameter, such as gait.period=0.3; may be repeated")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+      ->allow_extra_args(false);
+  command.add_option("--robot", robot_, "Folder under robots/, or an MJCF file [mini_cheetah]")
+      ->type_name("NAME|FILE.xml");
+  command.add_option("--controller", controller_, "mit, fkm, asc or pirouette [pirouette]")
+      ->type_name("NAME");
+}
+
+void ConfigOptions::add_run(CLI::App& command) {
+  add_shortcut(command, {"--rate", "run.rate"}, "RAD/S", "Yaw rate; positive turns left [0.7]");
+  add_shortcut(command, {"--turns", "run.turns"}, "N", "Turns to record after settling [8]");
+  add_shortcut(command, {"--terrain", "plant.terrain"}, "WHAT",
+               "flat, slope:10 (degrees), stairs:0.03x0.20 or rough:0.04 (m) [flat]");
+  add_shortcut(command, {"--estimator", "estimation.source"}, "WHICH", "kalman or truth [kalman]");
+  command.add_option("--sensors", sensors_, "noisy or ideal [noisy]")->type_name("WHICH");
+  add_shortcut(command, {"--seed", "run.seed"}, "N", "Of noise, biases and terrain [1]");
+  add_shortcut(command, {"--point", "run.point", true}, "X,Y",
+               "Commanded point in the world, m [where the CoM stands when the gait starts]");
+  add_shortcut(command, {"--start-offset", "run.start_offset", true}, "X,Y",
+               "Where the robot starts, m; it goes to the point, 0,0 unless given [0,0]");
+  add_shortcut(command, {"--start-yaw-deg", "run.start_yaw_deg"}, "DEG",
+               "Yaw at which the robot starts; it turns to 0 [0]");
+}
+
+void ConfigOptions::add_radius(CLI::App& command) {
+  command
+      .add_option("--radius", radius_,
+                  "Signed radius, m; the forward velocity is radius times rate")
+      ->type_name("M")
+      ->required();
+}
+
+void ConfigOptions::add_shortcut(CLI::App& command, Shortcut shortcut,
+                                 const std::string& placeholder, const std::string& help) {
+  Shortcut& kept = shortcuts_.emplace_back(std::move(shortcut));
+  command.add_option(kept.option, kept.text, help)->type_name(placeholder);
+}
+
+std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
+  std::vector<std::string> out;
+  for (const Shortcut& s : shortcuts_) {
+    if (!s.text) continue;
+    const auto value = s.is_pair ? pair_as_toml(*s.text) : s.text;
+    if (!value) {
+      errors.push_back(
+          {s.option, 0, "", "given " + quoted(*s.text) + "; allowed: X,Y in m, such as 0.1,-0.2"});
+      continue;
+    }
+    out.push_back(s.key + "=" + *value);
+    if (s.key == "run.point") out.push_back("run.fixed_point=true");
+  }
+  if (sensors_ && *sensors_ != "ideal" && *sensors_ != "noisy") {
+    errors.push_back(
+        {"--sensors", 0, "", "given " + quoted(*sensors_) + "; allowed: noisy, ideal"});
+  } else if (sensors_) {
+    out.push_back(std::string("plant.sensors.ideal=") + (*sensors_ == "ideal" ? "true" : "false"));
+  }
+  out.insert(out.end(), sets_.begin(), sets_.end());
+  return out;
+}
+
+Result<Config> ConfigOptions::load_with(const std::vector<std::string>& overrides) const {
+  ConfigSources sources{robot_, controller_, std::nullopt, overrides};
+  if (file_) sources.file = *file_;
+  Result<Config> config = load_config(sources);
+  if (config) return config;
+  Errors errors = config.errors();
+  for (Error& error : errors) {
+    if (error.file != "--set") continue;
+    for (const Shortcut& s : shortcuts_) {
+      if (s.text && s.key == error.key) error = {s.option, 0, "", error.message};
+    }
+    if (radius_ && error.key == "run.velocity") error = {"--radius", 0, "", error.message};
+  }
+  return errors;
+}
+
+Result<Config> ConfigOptions::load() const {
+  Errors errors;
+  std::vector<std::string> texts = overrides(errors);
+  Result<Config> config = load_with(texts);
+  if (config && radius_) {
+    texts.push_back("run.velocity=[" + as_toml(*radius_ * config.value().run.rate) + ", 0]");
+    config = load_with(texts);
+  }
+  if (!config) errors.insert(errors.end(), config.errors().begin(), config.errors().end());
+  if (!errors.empty()) return errors;
+  return config;
+}
+
+}  // namespace pirouette::app

@@ -1,0 +1,48 @@
+// The command-line options that make a configuration.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <list>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirouette/base/result.hpp"
+#include "pirouette/config/config.hpp"
+
+namespace pirouette::app {
+
+/// Options bound to a subcommand; must outlive the parsing.
+class ConfigOptions {
+ public:
+  /// --config, --set, --robot and --controller.
+  void add_common(CLI::App& command);
+  /// Short names of what a run changes most often: --rate, --terrain, --seed ...
+  void add_run(CLI::App& command);
+  /// --radius.
+  void add_radius(CLI::App& command);
+
+  /// Everything that is wrong names the option that was typed.
+  Result<Config> load() const;
+
+ private:
+  /// An option that stands for a parameter.
+  struct Shortcut {
+    std::string option;
+    std::string key;
+    bool is_pair = false;  ///< X,Y on the command line, a list in TOML
+    std::optional<std::string> text{};
+  };
+
+  void add_shortcut(CLI::App& command, Shortcut shortcut, const std::string& placeholder,
+                    const std::string& help);
+  std::vector<std::string> overrides(Errors& errors) const;
+  Result<Config> load_with(const std::vector<std::string>& overrides) const;
+
+  std::optional<std::string> robot_, controller_, file_, sensors_;
+  std::optional<double> radius_;
+  std::vector<std::string> sets_;
+  std::list<Shortcut> shortcuts_;  // CLI11 keeps references to the elements
+};
+
+}  // namespace pirouette::app

@@ -1,0 +1,18 @@
+// What the program's exit code says, and how it says what was wrong.
+#pragma once
+
+#include "pirouette/base/result.hpp"
+
+namespace pirouette::app {
+
+enum ExitCode : int {
+  kDone = 0,
+  kFell = 1,
+  kBadUsage = 2,  ///< command line, configuration, files
+  kSignal = 128,  ///< plus the signal's number: 130 after Ctrl-C
+};
+
+/// One line "error: ..." each on stderr; returns kBadUsage.
+int report(const Errors& errors);
+
+}  // namespace pirouette::app

@@ -1,0 +1,107 @@
+// The program `pirouette`: a verb each for what the library does, and `pirouette-<verb>` for the
+// rest.
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <string>
+
+#include "config_command.hpp"
+#include "exit_code.hpp"
+#include "pirouette/experiment/trial.hpp"
+#include "run_command.hpp"
+
+namespace pirouette::app {
+
+int report(const Errors& errors) {
+  for (const Error& error : errors) std::cerr << "error: " << error.to_string() << "\n";
+  return kBadUsage;
+}
+
+namespace {
+
+/// The arguments as one line that a shell takes again.
+std::string shell_line(int argc, char** argv) {
+  constexpr const char* kPlain =
+      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+  std::string line = "pirouette";
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    const bool plain = !argument.empty() && argument.find_first_not_of(kPlain) == argument.npos;
+    line += " ";
+    if (plain) {
+      line += argument;
+      continue;
+    }
+    line += '\'';
+    for (const char c : argument) {
+      if (c == '\'') {
+        line += "'\\''";
+      } else {
+        line += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? '?' : c;
+      }
+    }
+    line += '\'';
+  }
+  return line;
+}
+
+bool has_verb(const CLI::App& app, const std::string& verb) {
+  const auto commands = app.get_subcommands({});
+  return std::any_of(commands.begin(), commands.end(),
+                     [&](const CLI::App* command) { return command->check_name(verb); });
+}
+
+/// Becomes the program `pirouette-<verb>`; returns only when there is none.
+int run_external(const CLI::App& app, char** arguments) {
+  const std::string verb = arguments[0];
+  const std::string program = "pirouette-" + verb;
+  if (verb.find('/') == verb.npos) ::execvp(program.c_str(), arguments);
+  std::string verbs;
+  for (const CLI::App* command : app.get_subcommands({})) {
+    verbs += (verbs.empty() ? "" : ", ") + command->get_name();
+  }
+  return report(
+      {{"", 0, "",
+        "unknown verb \"" + verb + "\": no program " + program + " on PATH; allowed: " + verbs}});
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Accurate blind spinning of quadrupeds, simulated on MuJoCo.", "pirouette"};
+  app.footer(
+      "pirouette VERB --help explains a verb. Other verbs run the program pirouette-VERB.\n"
+      "Exit codes: 0 done, 1 the robot fell, 2 bad usage or configuration.");
+  app.set_version_flag("--version", std::string("pirouette ") + version() + " (" + commit() + ")");
+  app.require_subcommand(0, 1);
+  const std::string command_line = shell_line(argc, argv);
+  const RunCommand spin(app, RunCommand::Kind::kSpin, command_line);
+  const RunCommand turn(app, RunCommand::Kind::kTurn, command_line);
+  const ConfigCommand config(app);
+
+  if (argc > 1 && argv[1][0] != '-' && !has_verb(app, argv[1])) {
+    return run_external(app, argv + 1);
+  }
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
+    return report({{"", 0, "", error.what()}});
+  }
+  if (spin.chosen()) return spin.run();
+  if (turn.chosen()) return turn.run();
+  if (config.chosen()) return config.run();
+  std::cout << app.help();
+  return kDone;
+}
+
+}  // namespace
+}  // namespace pirouette::app
+
+int main(int argc, char** argv) {
+  try {
+    return pirouette::app::run(argc, argv);
+  } catch (const std::exception& error) {
+    return pirouette::app::report({{"", 0, "", error.what()}});
+  }
+}

@@ -1,0 +1,12 @@
+// The table a run prints for people.
+#pragma once
+
+#include <string>
+
+#include "pirouette/experiment/metrics.hpp"
+
+namespace pirouette::app {
+
+std::string summary(const Metrics& metrics);
+
+}  // namespace pirouette::app

@@ -1,0 +1,35 @@
+# `cmake --install`: program, libraries, headers, data and a package that find_package(pirouette) finds.
+include(CMakePackageConfigHelpers)
+
+set(_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pirouette)
+
+install(TARGETS pirouette pirouette_sim EXPORT pirouetteTargets)
+install(EXPORT pirouetteTargets NAMESPACE pirouette:: DESTINATION ${_package_dir})
+# The wheels' shared libraries stay where they are.
+set_target_properties(pirouette_program PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+install(TARGETS pirouette_program)
+
+install(
+  DIRECTORY src/pirouette
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
+  FILES_MATCHING
+  PATTERN "*.hpp"
+)
+install(DIRECTORY config robots DESTINATION ${CMAKE_INSTALL_DATADIR}/pirouette)
+
+configure_package_config_file(
+  cmake/pirouetteConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/pirouetteConfig.cmake
+  INSTALL_DESTINATION ${_package_dir}
+)
+write_basic_package_version_file(
+  ${PROJECT_BINARY_DIR}/pirouetteConfigVersion.cmake
+  COMPATIBILITY SameMinorVersion
+)
+install(
+  FILES
+    ${PROJECT_BINARY_DIR}/pirouetteConfig.cmake
+    ${PROJECT_BINARY_DIR}/pirouetteConfigVersion.cmake
+    cmake/FindMuJoCo.cmake
+  DESTINATION ${_package_dir}
+)

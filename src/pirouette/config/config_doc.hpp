@@ -1,0 +1,43 @@
+// Every parameter described in words: the source of the dump, the documentation and the error
+// texts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pirouette/config/config.hpp"
+
+namespace pirouette {
+
+struct ParameterInfo {
+  std::string key;      ///< dotted, such as gait.period
+  std::string name;     ///< last part of the key
+  std::string value;    ///< as a TOML literal
+  std::string unit;     ///< empty where there is none; "1" for a pure number
+  std::string allowed;  ///< "0.15 to 2", "centre, rolling", "true, false"; empty for free text
+  std::string meaning;
+};
+
+/// One TOML table. The first group of a Config has an empty key and holds robot and controller.
+struct ParameterGroup {
+  std::string key;
+  std::string meaning;
+  std::vector<ParameterInfo> parameters;
+};
+
+/// All parameters with the values of `config`, in the order of config.hpp, parents before children.
+std::vector<ParameterGroup> describe(const Config& config);
+
+/// Complete TOML with unit, range and meaning beside each value; loading it gives the same Config.
+std::string dump_toml(const Config& config);
+
+/// Shortest TOML float that reads back as the same double: 0.1, 5.0, 2e-4.
+std::string toml_literal(double value);
+
+/// Dotted keys of all parameters.
+std::vector<std::string> list_keys();
+
+/// The reference table of docs/parameters.md, with the defaults.
+std::string config_markdown();
+
+}  // namespace pirouette

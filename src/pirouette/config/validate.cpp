@@ -1,0 +1,112 @@
+#include "pirouette/config/validate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+
+#include "pirouette/config/suggest.hpp"
+
+namespace pirouette {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Sorted names of what `folder` holds, as `name_of` reads them from its entries.
+template <class NameOf>
+std::vector<std::string> names_in(const fs::path& folder, NameOf&& name_of) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
+    if (const std::optional<std::string> name = name_of(entry.path())) names.push_back(*name);
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace
+
+fs::path data_dir() {
+  if (const char* folder = std::getenv("PIROUETTE_DATA_DIR")) return folder;
+#ifdef PIROUETTE_SOURCE_DATA_DIR
+  if (fs::exists(fs::path(PIROUETTE_SOURCE_DATA_DIR) / "config")) return PIROUETTE_SOURCE_DATA_DIR;
+#endif
+#ifdef PIROUETTE_INSTALL_DATA_DIR
+  return PIROUETTE_INSTALL_DATA_DIR;
+#else
+  return ".";
+#endif
+}
+
+std::vector<std::string> known_robots() {
+  return names_in(data_dir() / "robots", [](const fs::path& folder) -> std::optional<std::string> {
+    const fs::path name = folder.filename();
+    if (!fs::exists(folder / (name.string() + ".xml"))) return std::nullopt;
+    return name.string();
+  });
+}
+
+std::vector<std::string> known_controllers() {
+  return names_in(data_dir() / "config" / "controllers",
+                  [](const fs::path& file) -> std::optional<std::string> {
+                    if (file.extension() != ".toml") return std::nullopt;
+                    return file.stem().string();
+                  });
+}
+
+Result<std::string> resolve_robot(const Config& config) {
+  const fs::path path = config.robot;
+  if (path.extension() == ".xml") {
+    if (fs::is_regular_file(path)) return path.string();
+    return Error{"", 0, "robot", "given " + in_quotes(config.robot) + ": no such file"};
+  }
+  const std::vector<std::string> robots = known_robots();
+  if (std::binary_search(robots.begin(), robots.end(), config.robot)) {
+    return (data_dir() / "robots" / config.robot / (config.robot + ".xml")).string();
+  }
+  return Error{"", 0, "robot",
+               unknown_name(config.robot, robots) + "; or the path of an MJCF file ending in .xml"};
+}
+
+Errors validate(const Config& config) {
+  Errors errors;
+  const auto require = [&](bool good, const char* key, const auto&... text) {
+    if (good) return;
+    std::ostringstream message;
+    (message << ... << text);
+    errors.push_back({"", 0, key, message.str()});
+  };
+
+  if (const Result<std::string> robot = resolve_robot(config); !robot) errors = robot.errors();
+
+  constexpr double kRounding = 1e-9;  // of a ratio of two decimal fractions
+  const double control_period = 1.0 / config.control.rate;
+  const double steps = control_period / config.plant.timestep;
+  require(steps > 1.0 - kRounding && std::abs(steps - std::round(steps)) < kRounding * steps,
+          "plant.timestep", "given ", config.plant.timestep,
+          " s; allowed: a whole fraction of the control period, 1/control.rate = ", control_period,
+          " s");
+
+  require(config.run.trace_rate <= config.control.rate, "run.trace_rate", "given ",
+          config.run.trace_rate, " Hz; allowed: up to control.rate = ", config.control.rate, " Hz");
+
+  constexpr double kMinSwingTime = 0.05;  // s; a leg cannot lift, move and land in less
+  const double swing_time = config.gait.period * (1.0 - config.gait.duty);
+  require(swing_time > kMinSwingTime - kRounding, "gait.duty", "given ", config.gait.duty,
+          " with gait.period = ", config.gait.period, " s: a swing of ", swing_time,
+          " s; allowed: swings of ", kMinSwingTime, " s and longer");
+
+  require(config.mpc.min_normal_force < config.mpc.max_normal_force, "mpc.min_normal_force",
+          "given ", config.mpc.min_normal_force,
+          " N; allowed: less than mpc.max_normal_force = ", config.mpc.max_normal_force, " N");
+
+  const double solve_period = config.mpc.ticks_per_solve * control_period;
+  const double horizon = config.mpc.horizon * config.mpc.step_share * config.gait.period;
+  require(solve_period <= horizon, "mpc.ticks_per_solve", "given ", config.mpc.ticks_per_solve,
+          ", a solution every ", solve_period, " s; allowed: within the horizon of ", horizon,
+          " s");
+  return errors;
+}
+
+}  // namespace pirouette

@@ -1,0 +1,506 @@
+#include "pirouette/controller/spin_controller.hpp"
+
+#include <chrono>
+
+#include "pirouette/com/com_planner.hpp"
+#include "pirouette/controller/body_horizon.hpp"
+#include "pirouette/controller/command_guard.hpp"
+#include "pirouette/estimation/attitude_filter.hpp"
+#include "pirouette/estimation/leg_odometry_filter.hpp"
+#include "pirouette/foot/leg_kinematics.hpp"
+#include "pirouette/foot/rolling_foot.hpp"
+#include "pirouette/gait/foothold_planner.hpp"
+#include "pirouette/gait/gait_clock.hpp"
+#include "pirouette/lowlevel/convex_mpc.hpp"
+#include "pirouette/lowlevel/swing_leg.hpp"
+#include "pirouette/lowlevel/whole_body_control.hpp"
+#include "pirouette/model/robot_model.hpp"
+#include "pirouette/path/path_reference.hpp"
+#include "pirouette/path/tracker.hpp"
+#include "pirouette/terrain/plane_estimator.hpp"
+
+namespace pirouette {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double microseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
+}
+
+bool is_finite(const SensorReading& s) {
+  bool ok = std::isfinite(s.time) && s.specific_force_B.allFinite() && s.w_WB_B.allFinite();
+  for (const Leg leg : kLegs) ok = ok && s.joint_position[leg].allFinite() && s.joint_velocity[leg].allFinite();
+  if (s.truth) {
+    ok = ok && s.truth->p_WB.allFinite() && s.truth->R_WB.allFinite() && s.truth->v_WB_W.allFinite() &&
+         s.truth->w_WB_B.allFinite();
+  }
+  return ok;
+}
+
+/// Joint angles with every foot below its hip, CoM (taken at the trunk origin) at the working height.
+PerLeg<Vec3> nominal_posture(const PerLeg<LegGeometry>& legs, double com_height) {
+  PerLeg<Vec3> q;
+  for (const Leg leg : kLegs) {
+    const LegGeometry& g = legs[leg];
+    const Vec3 p_HF(0.0, g.abad_offset, g.foot_radius - com_height - g.p_BH.z());
+    q[leg] = inverse_kinematics(g, p_HF).q;
+  }
+  return q;
+}
+
+Vec2 hip_centre(const PerLeg<LegGeometry>& legs) {
+  Vec2 sum = Vec2::Zero();
+  for (const LegGeometry& g : legs) sum += g.p_BH.head<2>() + Vec2(0.0, g.abad_offset);
+  return sum / static_cast<double>(kLegCount);
+}
+
+}  // namespace
+
+struct SpinController::Impl {
+  Impl(const Config& c, RobotModel robot)
+      : config(c),
+        model(std::move(robot)),
+        legs(model.legs()),
+        posture(nominal_posture(legs, c.body.height)),
+        foot(c.foot.model, legs[Leg::kFR].foot_radius),
+        attitude_filter(c.estimation),
+        odometry_filter(c.estimation),
+        plane_estimator(c.terrain),
+        clock(c.gait),
+        path_reference(c.path),
+        tracker(c.path, c.control.rate),
+        foothold_planner(c.foothold),
+        com_planner(c.com),
+        mpc(c.mpc, model.mass(), model.inertia(posture)),
+        wbc(c.wbc, c.mpc),
+        guard(c.joint, legs) {
+    p_BG_nominal = model.com(posture);
+    const Vec2 centre = hip_centre(legs);
+    for (const Leg leg : kLegs) {
+      const LegGeometry& g = legs[leg];
+      nominal_H[leg] = g.p_BH.head<2>() + Vec2(0.0, g.abad_offset) - centre +
+                       Vec2(fore_sign(leg) * c.body.stance_offset[0], side_sign(leg) * c.body.stance_offset[1]);
+    }
+    reset(BasePose{});
+  }
+
+  void reset(const BasePose& pose);
+  bool accept(const SensorReading& sensors);
+  void start_from_first_reading();
+  double measured_period(const SensorReading& sensors) const;
+
+  // The stages of a tick, in their order.
+  void estimate(const SensorReading& sensors, double dt);
+  void find_contacts(const SensorReading& sensors);
+  void plan_body(const MotionCommand& command, double dt);
+  void plan_feet(double dt);
+  void solve_mpc();
+  void solve_whole_body(double dt);
+
+  double trust(Leg leg) const;
+  FootOdometry foot_odometry(Leg leg) const;
+  double contact_height_above_plane() const;
+  double com_height_above_plane() const;
+  MpcInput mpc_input() const;
+  bool has_fallen() const;
+  void stand_down(ControllerStatus why);
+
+  Config config;
+  RobotModel model;
+  PerLeg<LegGeometry> legs;
+  PerLeg<Vec3> posture;  ///< rad, nominal joint angles
+  Vec3 p_BG_nominal;
+  PerLeg<Vec2> nominal_H{};  ///< m, footholds from the CoM
+
+  RollingFoot foot;
+  AttitudeFilter attitude_filter;
+  LegOdometryFilter odometry_filter;
+  PlaneEstimator plane_estimator;
+  GaitClock clock;
+  PathReference path_reference;
+  Tracker tracker;
+  FootholdPlanner foothold_planner;
+  CentreOfMassPlanner com_planner;
+  ConvexMpc mpc;
+  WholeBodyControl wbc;
+  CommandGuard guard;
+
+  BasePose start;
+  bool started = false;
+  YawUnwrapper yaw;
+  SensorReading last_good;
+  int bad_readings = 0;
+  int solver_failures = 0;
+  int ticks_until_mpc = 0;
+  PerLeg<bool> solved_contacts{};  ///< contact set of the last MPC solution
+  PerLeg<bool> landed_early{};
+  PerLeg<Vec3> p_WF_liftoff{};
+  ContactForces last_forces;
+
+  TickTrace trace;
+  TickTiming timing;
+};
+
+void SpinController::Impl::reset(const BasePose& pose) {
+  start = pose;
+  started = false;
+  trace = TickTrace{};
+  timing = TickTiming{};
+  bad_readings = solver_failures = ticks_until_mpc = 0;
+  landed_early = {};
+  last_forces = ContactForces{};
+  attitude_filter.reset(pose.R_WB);
+  clock.reset();
+  path_reference.reset();
+  tracker.reset();
+  com_planner.reset();
+  yaw.reset(rpy_from_rotation(pose.R_WB).yaw);
+}
+
+/// Bridges single bad readings by the last good one; false when there have been too many.
+bool SpinController::Impl::accept(const SensorReading& sensors) {
+  if (is_finite(sensors)) {
+    last_good = sensors;
+    bad_readings = 0;
+    return true;
+  }
+  ++bad_readings;
+  return started && bad_readings <= config.safety.max_bad_readings;
+}
+
+void SpinController::Impl::start_from_first_reading() {
+  PerLeg<Vec3> p_WF;
+  std::array<Vec3, kLegCount> contacts;
+  const Vec3 up = Vec3::UnitZ();
+  for (const Leg leg : kLegs) {
+    const FootState state = foot_state(legs[leg], last_good.joint_position[leg], last_good.joint_velocity[leg]);
+    p_WF[leg] = start.p_WB + start.R_WB * state.p_BF;
+    contacts[index(leg)] = foot.contact_point(p_WF[leg], up);
+  }
+  const std::array<double, kLegCount> weights = {1.0, 1.0, 1.0, 1.0};
+  const bool flat = config.terrain.estimation == TerrainEstimation::kOff;
+  // "Flat world": no direction scatters enough to have a slope.
+  const double min_scatter = flat ? 1e9 : config.terrain.min_scatter;
+  trace.plane = fit_plane(contacts, weights, TerrainPlane{}, min_scatter, 0.0);
+  plane_estimator.reset(trace.plane);
+  odometry_filter.reset(start.p_WB, p_WF);
+  guard.reset(last_good.joint_position);
+  trace.state.p_WB = start.p_WB;
+  trace.state.R_WB = start.R_WB;
+  p_WF_liftoff = p_WF;
+  started = true;
+}
+
+double SpinController::Impl::measured_period(const SensorReading& sensors) const {
+  const double nominal = 1.0 / config.control.rate;
+  if (!started) return nominal;
+  return std::clamp(sensors.time - trace.sensors.time, 0.5 * nominal, 10.0 * nominal);
+}
+
+/// How much of a foot's word the odometry takes: ramps in after touchdown and out before lift-off.
+double SpinController::Impl::trust(Leg leg) const {
+  if (!trace.gait.walking) return 1.0;
+  const LegPhase& phase = trace.gait.leg[leg];
+  if (!phase.stance || !trace.contacts[leg].measured) return 0.0;
+  if (config.estimation.trust_window <= 0.0) return 1.0;
+  return std::clamp(std::min(phase.progress, 1.0 - phase.progress) / config.estimation.trust_window, 0.0, 1.0);
+}
+
+/// With the point-foot model the terrain plane runs through the sphere centres.
+double SpinController::Impl::contact_height_above_plane() const {
+  return foot.radius() * std::sqrt(1.0 + square(trace.plane.a1) + square(trace.plane.a2));
+}
+
+double SpinController::Impl::com_height_above_plane() const {
+  const double hidden_radius = legs[Leg::kFR].foot_radius - foot.radius();
+  return config.body.height - hidden_radius;
+}
+
+FootOdometry SpinController::Impl::foot_odometry(Leg leg) const {
+  const FootState& state = trace.feet[leg];
+  const Mat3& R_WB = trace.state.R_WB;
+  FootOdometry out;
+  out.p_BF_W = R_WB * state.p_BF;
+  out.v_BF_W = R_WB * (trace.state.w_WB_B.cross(state.p_BF) + state.v_BF_B);
+  out.v_WF_rolling_W =
+      foot.rolling_velocity(R_WB * (trace.state.w_WB_B + state.w_BS_B), trace.contacts[leg].n_W);
+  out.trust = trust(leg);
+  const Vec3 p_WF = trace.state.p_WB + out.p_BF_W;
+  out.centre_height = trace.plane.height(p_WF.x(), p_WF.y()) + contact_height_above_plane();
+  out.use_height = true;
+  return out;
+}
+
+void SpinController::Impl::estimate(const SensorReading& sensors, double dt) {
+  RobotState& state = trace.state;
+  state.time = sensors.time;
+  state.joint_position = sensors.joint_position;
+  state.joint_velocity = sensors.joint_velocity;
+  for (const Leg leg : kLegs) {
+    trace.feet[leg] = foot_state(legs[leg], sensors.joint_position[leg], sensors.joint_velocity[leg]);
+  }
+  if (config.estimation.source == EstimatorSource::kTruth && sensors.truth) {
+    state.p_WB = sensors.truth->p_WB;
+    state.R_WB = sensors.truth->R_WB;
+    state.v_WB_W = sensors.truth->v_WB_W;
+    state.w_WB_B = sensors.truth->w_WB_B;
+  } else {
+    const Attitude attitude =
+        attitude_filter.update({sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking}, dt);
+    state.R_WB = attitude.R_WB;
+    state.w_WB_B = attitude.w_WB_B;
+    OdometryInput in;
+    in.a_WB_W = state.R_WB * sensors.specific_force_B - Vec3(0.0, 0.0, kGravity);
+    for (const Leg leg : kLegs) in.foot[leg] = foot_odometry(leg);
+    const OdometryEstimate odometry = odometry_filter.update(in, dt);
+    state.p_WB = odometry.p_WB;
+    state.v_WB_W = odometry.v_WB_W;
+  }
+  state.rpy = rpy_from_rotation(state.R_WB);
+  state.rpy.yaw = yaw.update(state.rpy.yaw);
+  for (const Leg leg : kLegs) {
+    const FootState& f = trace.feet[leg];
+    state.p_WF[leg] = state.p_WB + state.R_WB * f.p_BF;
+    state.v_WF_W[leg] = state.v_WB_W + state.R_WB * (state.w_WB_B.cross(f.p_BF) + f.v_BF_B);
+  }
+  model.update(state);
+  state.p_WG = model.p_WG();
+  state.v_WG_W = model.v_WG_W();
+}
+
+void SpinController::Impl::find_contacts(const SensorReading& sensors) {
+  for (const Leg leg : kLegs) {
+    FootContact& contact = trace.contacts[leg];
+    const LegPhase& phase = trace.gait.leg[leg];
+    const bool was_in_contact = contact.in_contact;
+    contact.measured = sensors.foot_contact ? (*sensors.foot_contact)[leg] : phase.stance;
+    const bool late_in_swing = !phase.stance && phase.progress >= config.gait.early_contact_progress;
+    landed_early[leg] =
+        late_in_swing && (landed_early[leg] || (sensors.foot_contact.has_value() && contact.measured));
+    contact.in_contact = phase.stance || landed_early[leg];
+    contact.n_W = trace.plane.normal();
+    contact.p_WC = foot.contact_point(trace.state.p_WF[leg], contact.n_W);
+    contact.v_WF_rolling_W = foot.rolling_velocity(
+        trace.state.R_WB * (trace.state.w_WB_B + trace.feet[leg].w_BS_B), contact.n_W);
+    if (was_in_contact && !contact.in_contact) p_WF_liftoff[leg] = trace.state.p_WF[leg];
+  }
+}
+
+void SpinController::Impl::plan_body(const MotionCommand& command, double dt) {
+  PlaneInput plane_input;
+  for (const Leg leg : kLegs) {
+    plane_input.p_WC[leg] = trace.contacts[leg].p_WC;
+    plane_input.touching[leg] = trace.contacts[leg].in_contact && trace.contacts[leg].measured;
+  }
+  trace.plane = plane_estimator.update(plane_input, dt);
+  trace.path = path_reference.update(command, trace.state, dt);
+  trace.twist = tracker.update(trace.path, trace.state, dt);
+  trace.integral_H = tracker.integral_H();
+}
+
+void SpinController::Impl::plan_feet(double dt) {
+  const RobotState& state = trace.state;
+  FootholdInput in;
+  in.gait = trace.gait;
+  in.nominal_H = nominal_H;
+  in.centre_offset = foot.centre_offset();
+  in.p_WG = state.p_WG.head<2>();
+  in.v_WG_H = rot2(state.rpy.yaw).transpose() * state.v_WG_W.head<2>();
+  in.yaw = state.rpy.yaw;
+  in.twist = trace.twist;
+  in.plane = trace.plane;
+  if (config.foothold.rolling_compensation && foot.radius() > 0.0) {
+    StanceMotion motion;
+    motion.p_BG = p_BG_nominal;
+    motion.R_HB = rotation_from_rpy({state.rpy.roll, state.rpy.pitch, 0.0});
+    motion.n_H = rot_z(state.rpy.yaw).transpose() * trace.plane.normal();
+    motion.twist = trace.twist;
+    motion.duration = trace.gait.stance_duration;
+    for (const Leg leg : kLegs) {
+      motion.p_BF = legs[leg].p_BH + foot_position_H(legs[leg], posture[leg]);
+      in.rolling_shift_H[leg] = 0.5 * foot.stance_travel(legs[leg], motion).head<2>();
+    }
+  }
+  trace.footholds = foothold_planner.update(in);
+
+  ComPlannerInput com;
+  com.gait = trace.gait;
+  com.reference = trace.path.p_WG;
+  com.com = state.p_WG.head<2>();
+  for (const Leg leg : kLegs) {
+    com.contact[leg] = trace.contacts[leg].p_WC.head<2>();
+    com.lift_off[leg] = p_WF_liftoff[leg].head<2>();
+    com.next_foothold[leg] = trace.footholds[leg].p_WC.head<2>();
+    com.touching[leg] = trace.contacts[leg].in_contact;
+  }
+  const ComTarget target = com_planner.update(com, dt);
+  trace.com_plan = target.plan;
+  trace.psp_weight = target.weight;
+
+  HorizonInput horizon;
+  horizon.path = trace.path;
+  horizon.twist = trace.twist;
+  horizon.com_plan = trace.com_plan;
+  horizon.plane = trace.plane;
+  horizon.p_WG = com.com;
+  horizon.yaw = state.rpy.yaw;
+  horizon.com_height = com_height_above_plane();
+  horizon.max_lead = config.path.reference == PathReferenceMode::kIntegrated ? config.path.max_integrated_lead
+                                                                             : config.path.max_position_lead;
+  trace.reference = body_reference(horizon);
+
+  for (const Leg leg : kLegs) {
+    const LegPhase& phase = trace.gait.leg[leg];
+    if (trace.contacts[leg].in_contact) {
+      trace.swing[leg] = {state.p_WF[leg], trace.contacts[leg].v_WF_rolling_W, Vec3::Zero()};
+      continue;
+    }
+    trace.swing[leg] = swing_target({p_WF_liftoff[leg], trace.footholds[leg].p_WF, phase.progress, phase.duration,
+                                     config.gait.swing_height});
+  }
+}
+
+MpcInput SpinController::Impl::mpc_input() const {
+  const RobotState& state = trace.state;
+  MpcInput in;
+  in.dt = config.mpc.step_share * config.gait.period;
+  in.n_W = trace.plane.normal();
+  in.now.rpy = Vec3(state.rpy.roll, state.rpy.pitch, state.rpy.yaw);
+  in.now.p_WG = state.p_WG;
+  in.now.v_WG_W = state.v_WG_W;
+  in.now.w_WB_W = state.w_WB_W();
+  const double height = com_height_above_plane();
+  for (int k = 0; k < config.mpc.horizon; ++k) {
+    MpcStep& step = in.steps[static_cast<size_t>(k)];
+    const double middle = (k + 0.5) * in.dt;
+    const BodyMotion mid = reference_after(trace.reference, trace.plane, height, middle);
+    step.reference = reference_after(trace.reference, trace.plane, height, (k + 1) * in.dt);
+    step.rpy_mid = {mid.rpy.x(), mid.rpy.y(), mid.rpy.z()};
+    step.p_WG_mid = mid.p_WG;
+    for (const Leg leg : kLegs) {
+      const LegPhase ahead = clock.phase_at(leg, middle);
+      const bool same_stance = trace.contacts[leg].in_contact && ahead.stride == trace.gait.leg[leg].stride;
+      step.stance[leg] = k == 0 ? trace.contacts[leg].in_contact : ahead.stance;
+      step.p_WC[leg] = same_stance ? trace.contacts[leg].p_WC : trace.footholds[leg].p_WC;
+    }
+  }
+  return in;
+}
+
+void SpinController::Impl::solve_mpc() {
+  PerLeg<bool> contacts{};
+  bool changed = false;
+  for (const Leg leg : kLegs) {
+    contacts[leg] = trace.contacts[leg].in_contact;
+    changed = changed || contacts[leg] != solved_contacts[leg];
+  }
+  timing.mpc_us = 0.0;
+  if (ticks_until_mpc-- > 0 && !changed) {
+    trace.mpc = last_forces;
+    return;
+  }
+  ticks_until_mpc = config.mpc.ticks_per_solve - 1;
+  solved_contacts = contacts;
+  const auto begin = Clock::now();
+  const ContactForces forces = mpc.update(mpc_input());
+  timing.mpc_us = microseconds_since(begin);
+  if (forces.status == SolveStatus::kFailed) {
+    ++solver_failures;
+    last_forces.status = SolveStatus::kHeld;
+  } else {
+    solver_failures = 0;
+    last_forces = forces;
+  }
+  trace.mpc = last_forces;
+}
+
+void SpinController::Impl::solve_whole_body(double dt) {
+  const auto begin = Clock::now();
+  WbcInput in;
+  in.state = trace.state;
+  in.reference = trace.reference;
+  in.swing = trace.swing;
+  in.contacts = trace.contacts;
+  in.mpc = trace.mpc;
+  in.contact_radius = foot.radius();
+  in.n_W = trace.plane.normal();
+  const WbcOutput out = wbc.update(in, model);
+  timing.wbc_us = microseconds_since(begin);
+
+  trace.wbc = out.forces;
+  if (out.forces.status == SolveStatus::kFailed) {
+    // The previous command stands for this tick.
+    ++solver_failures;
+    trace.wbc.status = SolveStatus::kHeld;
+    return;
+  }
+  JointCommand raw;
+  for (const Leg leg : kLegs) {
+    const bool stance = trace.contacts[leg].in_contact;
+    LegCommand& c = raw[leg];
+    c.q = out.q[leg];
+    c.dq = out.dq[leg];
+    c.tau = out.tau[leg];
+    c.kp.setConstant(stance ? config.joint.kp_stance : config.joint.kp_swing);
+    c.kd.setConstant(stance ? config.joint.kd_stance : config.joint.kd_swing);
+  }
+  if (!guard.update(raw, dt, trace.command)) stand_down(ControllerStatus::kBadCommand);
+}
+
+bool SpinController::Impl::has_fallen() const {
+  const RobotState& state = trace.state;
+  const double tilt = std::acos(std::clamp(state.R_WB.col(2).dot(trace.plane.normal()), -1.0, 1.0));
+  const double height = state.p_WG.z() - trace.plane.height(state.p_WG.x(), state.p_WG.y());
+  return tilt > config.safety.max_tilt || height < config.safety.min_height_share * com_height_above_plane();
+}
+
+void SpinController::Impl::stand_down(ControllerStatus why) {
+  trace.status = why;
+  trace.command = damped_stand_down(config.joint.kd_stand);
+}
+
+Result<SpinController> SpinController::create(const Config& config, const std::string& mjcf) {
+  Result<RobotModel> model = RobotModel::load(mjcf);
+  if (!model.ok()) return model.errors();
+  return SpinController(std::make_unique<Impl>(config, std::move(model).value()));
+}
+
+SpinController::SpinController(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+SpinController::SpinController(SpinController&&) noexcept = default;
+SpinController& SpinController::operator=(SpinController&&) noexcept = default;
+SpinController::~SpinController() = default;
+
+void SpinController::reset(const BasePose& start) { impl_->reset(start); }
+ControllerStatus SpinController::status() const { return impl_->trace.status; }
+const TickTrace& SpinController::trace() const { return impl_->trace; }
+const TickTiming& SpinController::timing() const { return impl_->timing; }
+
+const JointCommand& SpinController::tick(const SensorReading& sensors, const MotionCommand& command) noexcept {
+  Impl& s = *impl_;
+  TickTrace& t = s.trace;
+  if (is_stood_down(t.status)) return t.command;
+  if (!s.accept(sensors)) {
+    s.stand_down(ControllerStatus::kBadInput);
+    return t.command;
+  }
+  const double dt = s.measured_period(s.last_good);
+  if (!s.started) s.start_from_first_reading();
+  t.sensors = s.last_good;
+
+  s.estimate(t.sensors, dt);
+  t.gait = s.clock.update(command.walk, dt);
+  t.status = t.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
+  s.find_contacts(t.sensors);
+  s.plan_body(command, dt);
+  s.plan_feet(dt);
+  s.solve_mpc();
+  s.solve_whole_body(dt);
+
+  if (s.solver_failures > s.config.safety.max_solver_failures) s.stand_down(ControllerStatus::kSolverFailed);
+  if (s.has_fallen()) s.stand_down(ControllerStatus::kFallen);
+  return t.command;
+}
+
+}  // namespace pirouette

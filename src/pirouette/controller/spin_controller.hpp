@@ -1,0 +1,48 @@
+// The whole controller: sensor readings and a motion command in, joint commands out.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "pirouette/base/result.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/types/joint_command.hpp"
+#include "pirouette/types/motion_command.hpp"
+#include "pirouette/types/sensor_reading.hpp"
+#include "pirouette/types/tick_trace.hpp"
+
+namespace pirouette {
+
+/// Wall-clock cost of the last tick; kept out of TickTrace, which must be reproducible.
+struct TickTiming {
+  double mpc_us = 0.0;  ///< 0 in ticks that did not solve the MPC
+  double wbc_us = 0.0;
+};
+
+class SpinController {
+ public:
+  /// Loads the robot's own model from `mjcf`.
+  static Result<SpinController> create(const Config& config, const std::string& mjcf);
+
+  SpinController(SpinController&&) noexcept;
+  SpinController& operator=(SpinController&&) noexcept;
+  ~SpinController();
+
+  /// Forgets everything and starts the estimator from `start`.
+  void reset(const BasePose& start);
+
+  /// One control period. No exception, no allocation, no I/O. After a failure that latches
+  /// (is_stood_down) every further command is the damped stand-down until reset().
+  const JointCommand& tick(const SensorReading& sensors, const MotionCommand& command) noexcept;
+
+  ControllerStatus status() const;
+  const TickTrace& trace() const;
+  const TickTiming& timing() const;
+
+ private:
+  struct Impl;
+  explicit SpinController(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pirouette

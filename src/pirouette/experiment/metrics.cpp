@@ -1,0 +1,197 @@
+#include "pirouette/experiment/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "pirouette/base/rotation.hpp"
+#include "pirouette/experiment/statistics.hpp"
+
+namespace pirouette {
+namespace {
+
+constexpr double kMillimetres = 1e3;
+constexpr double kMillimetres2 = 1e6;
+
+Number scaled(const Number& value, double factor) {
+  if (!value) return std::nullopt;
+  return *value * factor;
+}
+
+std::vector<double> component(std::span<const Vec2> points, int axis) {
+  std::vector<double> out;
+  out.reserve(points.size());
+  for (const Vec2& p : points) out.push_back(p[axis]);
+  return out;
+}
+
+ComMetrics evaluate_com(const MotionRecord& record, const CommandedMotion& commanded) {
+  const std::vector<Vec2> path = resample(record.time, record.p_WG, kComRate);
+  ComMetrics com;
+  if (commanded.v_H.isZero(0.0)) {
+    const std::vector<double> distance = distances(path, commanded.point);
+    com.distance_to_point_mean_mm = scaled(mean(distance), kMillimetres);
+    com.distance_to_point_max_mm = scaled(maximum(distance), kMillimetres);
+    com.distance_to_point_p95_mm = scaled(quantile(distance, 0.95), kMillimetres);
+  }
+  const std::vector<double> radius = distances(path, centroid(path));
+  com.radius_mean_mm = scaled(mean(radius), kMillimetres);
+  com.radius_max_mm = scaled(maximum(radius), kMillimetres);
+  com.radius_variance_mm2 = scaled(variance(radius), kMillimetres2);
+  if (const auto circle = fit_circle(path)) {
+    com.circle_radius_mm = circle->mean_radius * kMillimetres;
+    com.circle_variance_mm2 = circle->radius_variance * kMillimetres2;
+    com.circle_centre_x_mm = (circle->centre.x() - commanded.point.x()) * kMillimetres;
+    com.circle_centre_y_mm = (circle->centre.y() - commanded.point.y()) * kMillimetres;
+  }
+  const auto window = static_cast<std::size_t>(kRecordLength * kComRate);
+  com.peak_to_peak_x_mm = scaled(peak_to_peak(component(path, 0), window), kMillimetres);
+  com.peak_to_peak_y_mm = scaled(peak_to_peak(component(path, 1), window), kMillimetres);
+  com.drift_per_turn_mm = scaled(drift_per_turn(record.yaw, record.p_WG), kMillimetres);
+  if (const auto bias = body_bias(record.yaw, record.v_WG_W, commanded.v_H)) {
+    com.body_bias_mm_s = bias->norm() * kMillimetres;
+    com.body_bias_x_mm_s = bias->x() * kMillimetres;
+    com.body_bias_y_mm_s = bias->y() * kMillimetres;
+  }
+  return com;
+}
+
+AccelerationMetrics evaluate_acceleration(const MotionRecord& record, double rate) {
+  const auto filtered_variance = [&](const std::vector<double>& x) {
+    return variance(zero_phase_lowpass(x, rate, kAccelerationCutoff));
+  };
+  AccelerationMetrics out;
+  out.x_variance = filtered_variance(component(record.a_WB_W, 0));
+  out.y_variance = filtered_variance(component(record.a_WB_W, 1));
+  out.roll_variance = filtered_variance(central_difference(record.roll_rate, rate));
+  out.pitch_variance = filtered_variance(central_difference(record.pitch_rate, rate));
+  return out;
+}
+
+}  // namespace
+
+void MotionRecord::add(const PlantTruth& truth, double true_yaw, const RobotState& estimate) {
+  const RollPitchYaw rpy = rpy_from_rotation(truth.base.R_WB);
+  time.push_back(truth.time);
+  p_WG.emplace_back(truth.p_WG.head<2>());
+  v_WG_W.emplace_back(truth.v_WG_W.head<2>());
+  roll.push_back(rpy.roll);
+  pitch.push_back(rpy.pitch);
+  yaw.push_back(true_yaw);
+  a_WB_W.emplace_back(truth.a_WB_W.head<2>());
+  roll_rate.push_back(truth.base.w_WB_B.x());
+  pitch_rate.push_back(truth.base.w_WB_B.y());
+  position_error.push_back((estimate.p_WB - truth.base.p_WB).head<2>().norm());
+  yaw_error.push_back(std::abs(wrap_angle(estimate.rpy.yaw - true_yaw)));
+}
+
+Number peak_to_peak(std::span<const double> x, std::size_t length) {
+  if (x.empty()) return std::nullopt;
+  const std::size_t window = std::min(length, x.size());
+  double sum = 0.0;
+  std::size_t count = 0;
+  for (; (count + 1) * window <= x.size(); ++count) {
+    const auto part = x.subspan(count * window, window);
+    const auto [low, high] = std::minmax_element(part.begin(), part.end());
+    sum += *high - *low;
+  }
+  return sum / static_cast<double>(count);
+}
+
+Number drift_per_turn(std::span<const double> yaw, std::span<const Vec2> p_WG) {
+  constexpr double kTurn = 2.0 * kPi;
+  if (yaw.empty()) return std::nullopt;
+  const double turns = std::abs(yaw.back() - yaw.front()) / kTurn;
+  if (turns < 2.0) return std::nullopt;
+  std::size_t first = 0;
+  while (std::abs(yaw[first] - yaw.front()) < kTurn) ++first;
+  std::size_t last = yaw.size();
+  while (std::abs(yaw.back() - yaw[last - 1]) < kTurn) --last;
+  return (centroid(p_WG.subspan(last)) - centroid(p_WG.first(first))).norm() / (turns - 1.0);
+}
+
+std::optional<Vec2> body_bias(std::span<const double> yaw, std::span<const Vec2> v_WG_W,
+                              const Vec2& commanded_v_H) {
+  if (yaw.empty()) return std::nullopt;
+  Vec2 sum = Vec2::Zero();
+  for (std::size_t i = 0; i < yaw.size(); ++i) sum += rot2(-yaw[i]) * v_WG_W[i];
+  return Vec2(sum / static_cast<double>(yaw.size()) - commanded_v_H);
+}
+
+TimingMetrics summarise_times(std::span<const double> tick_us, std::span<const double> mpc_us,
+                              std::span<const double> wbc_us) {
+  TimingMetrics timing;
+  timing.tick_us_median = quantile(tick_us, 0.5);
+  timing.tick_us_p99 = quantile(tick_us, 0.99);
+  timing.tick_us_max = maximum(tick_us);
+  timing.mpc_us_median = quantile(mpc_us, 0.5);
+  timing.wbc_us_median = quantile(wbc_us, 0.5);
+  return timing;
+}
+
+Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, double rate) {
+  Metrics m;
+  if (record.time.size() > 1) {
+    const double angle = record.yaw.back() - record.yaw.front();
+    m.turns_done = angle / (2.0 * kPi) * (commanded.yaw_rate < 0.0 ? -1.0 : 1.0);
+    m.yaw_rate_mean = angle / (record.time.back() - record.time.front());
+    if (commanded.yaw_rate != 0.0) m.yaw_rate_error = *m.yaw_rate_mean / commanded.yaw_rate - 1.0;
+  }
+  m.com = evaluate_com(record, commanded);
+  m.attitude = {mean(record.roll), variance(record.roll), mean(record.pitch),
+                variance(record.pitch)};
+  m.acceleration = evaluate_acceleration(record, rate);
+  m.estimator = {scaled(mean(record.position_error), kMillimetres), mean(record.yaw_error)};
+  return m;
+}
+
+namespace {
+
+struct JsonWriter {
+  nlohmann::ordered_json root;
+
+  template <class T>
+  void operator()(const T& value, const char* key, const char* /*unit*/, const char* /*meaning*/) {
+    const std::string_view path = key;
+    const auto dot = path.find('.');
+    auto& entry = dot == path.npos
+                      ? root[std::string(path)]
+                      : root[std::string(path.substr(0, dot))][std::string(path.substr(dot + 1))];
+    entry = convert(value);
+  }
+
+ private:
+  template <class T>
+  static nlohmann::ordered_json convert(const T& value) {
+    return value;
+  }
+  static nlohmann::ordered_json convert(double value) {
+    return std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+  }
+  static nlohmann::ordered_json convert(const Number& value) {
+    return value ? convert(*value) : nullptr;
+  }
+};
+
+}  // namespace
+
+std::string to_json(const Metrics& metrics) {
+  JsonWriter writer;
+  Metrics::fields(metrics, writer);
+  constexpr int kIndent = 2;
+  using Json = nlohmann::ordered_json;
+  // A path that is not UTF-8 must not throw away the run.
+  return writer.root.dump(kIndent, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string metrics_markdown() {
+  std::string out = "| key | unit | meaning |\n|---|---|---|\n";
+  const Metrics metrics;
+  Metrics::fields(metrics,
+                  [&](const auto&, const char* key, const char* unit, const char* meaning) {
+                    out += std::string("| `") + key + "` | " + unit + " | " + meaning + " |\n";
+                  });
+  return out;
+}
+
+}  // namespace pirouette

@@ -1,0 +1,224 @@
+// How good a spin was: the numbers of metrics.json (docs/equations.md#metrics).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "pirouette/base/math.hpp"
+#include "pirouette/types/plant_truth.hpp"
+#include "pirouette/types/robot_state.hpp"
+
+namespace pirouette {
+
+/// Absent: the run gives no sensible value (too short, too few samples); null in metrics.json.
+using Number = std::optional<double>;
+
+inline constexpr double kComRate = 100.0;            ///< Hz, to which the CoM is resampled
+inline constexpr double kAccelerationCutoff = 20.0;  ///< Hz, of the accelerations' low-pass
+inline constexpr double kRecordLength = 10.0;        ///< s, of one peak-to-peak record
+
+/// What was asked of the robot, in the true world.
+struct CommandedMotion {
+  Vec2 point = Vec2::Zero();  ///< m
+  Vec2 v_H = Vec2::Zero();    ///< m/s, heading axes
+  double yaw_rate = 0.0;      ///< rad/s
+};
+
+/// The recorded part of a run: one entry per control tick in every list.
+struct MotionRecord {
+  std::vector<double> time;            ///< s
+  std::vector<Vec2> p_WG;              ///< m, true CoM
+  std::vector<Vec2> v_WG_W;            ///< m/s, true CoM
+  std::vector<double> roll;            ///< rad, true
+  std::vector<double> pitch;           ///< rad, true
+  std::vector<double> yaw;             ///< rad, true, unwrapped
+  std::vector<Vec2> a_WB_W;            ///< m/s^2, true, trunk origin
+  std::vector<double> roll_rate;       ///< rad/s, true, about the body's x axis
+  std::vector<double> pitch_rate;      ///< rad/s, true, about the body's y axis
+  std::vector<double> position_error;  ///< m, horizontal, estimated to true trunk position
+  std::vector<double> yaw_error;       ///< rad, |estimated - true|
+
+  /// `yaw` is the true yaw, unwrapped.
+  void add(const PlantTruth& truth, double yaw, const RobotState& estimate);
+};
+
+struct ComMetrics {
+  Number distance_to_point_mean_mm, distance_to_point_max_mm, distance_to_point_p95_mm;
+  Number radius_mean_mm, radius_max_mm, radius_variance_mm2;
+  Number circle_radius_mm, circle_variance_mm2, circle_centre_x_mm, circle_centre_y_mm;
+  Number peak_to_peak_x_mm, peak_to_peak_y_mm;
+  Number drift_per_turn_mm;
+  Number body_bias_mm_s, body_bias_x_mm_s, body_bias_y_mm_s;
+};
+
+struct AttitudeMetrics {
+  Number roll_mean, roll_variance, pitch_mean, pitch_variance;
+};
+
+struct AccelerationMetrics {
+  Number x_variance, y_variance, roll_variance, pitch_variance;
+};
+
+struct EstimatorMetrics {
+  Number position_error_mm, yaw_error_rad;
+};
+
+/// Wall-clock times; they differ from run to run.
+struct TimingMetrics {
+  Number tick_us_median, tick_us_p99, tick_us_max;
+  Number mpc_us_median, wbc_us_median, physics_step_us_median;
+  Number real_time_factor;
+};
+
+/// What the numbers hold for.
+struct RunContext {
+  std::string robot, terrain, controller, estimator, reference, tracker, foot_model, com_planner;
+  double duty = 0.0;
+  double period = 0.0;
+  double torsional_friction = 0.0;
+  double friction = 0.0;
+  std::int64_t seed = 0;
+  double duration_s = 0.0;
+  std::string mujoco, commit, version, sensors;
+  double yaw_rate = 0.0;
+  double velocity_x = 0.0;
+  double velocity_y = 0.0;
+  Number point_x, point_y;
+};
+
+struct Metrics {
+  bool fell = false;
+  Number fall_time_s;
+  double turns_done = 0.0;
+  Number yaw_rate_mean, yaw_rate_error;
+  ComMetrics com;
+  AttitudeMetrics attitude;
+  AccelerationMetrics acceleration;
+  EstimatorMetrics estimator;
+  TimingMetrics timing;
+  RunContext context;
+
+  /// Calls visit(value, "key", "unit", "meaning") for each entry of metrics.json in its order; a
+  /// dot in the key nests. A value is a bool, double, Number, int64 or string.
+  template <class Self, class Visit>
+  static void fields(Self& m, Visit&& v);
+};
+
+/// The motion's part of the metrics, of `record` sampled at `rate` (Hz). Lengths are horizontal.
+Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, double rate);
+
+/// Mean over consecutive whole windows of `length` samples of max - min; of all when shorter.
+Number peak_to_peak(std::span<const double> x, std::size_t length);
+
+/// m per turn: from the mean point of the first turn to that of the last one, divided by the turns
+/// between the middles of both. `yaw` is unwrapped. Absent for less than two turns.
+Number drift_per_turn(std::span<const double> yaw, std::span<const Vec2> p_WG);
+
+/// Mean velocity in heading axes less the commanded one: the bias that draws a circle of radius
+/// |b| / yaw rate. Inputs in world axes; m/s.
+std::optional<Vec2> body_bias(std::span<const double> yaw, std::span<const Vec2> v_WG_W,
+                              const Vec2& commanded_v_H);
+
+/// Median, p99 and largest of the tick times, medians of the others; zeros (no solution in that
+/// tick) are left out of `mpc_us` and `wbc_us` by the caller. physics and real time are not set.
+TimingMetrics summarise_times(std::span<const double> tick_us, std::span<const double> mpc_us,
+                              std::span<const double> wbc_us);
+
+/// The text of metrics.json: non-finite and absent values are null.
+std::string to_json(const Metrics& metrics);
+
+/// Table of every key with unit and meaning, in Markdown.
+std::string metrics_markdown();
+
+template <class Self, class Visit>
+void Metrics::fields(Self& m, Visit&& v) {
+  v(m.fell, "fell", "", "the robot fell, or its controller gave up for a second");
+  v(m.fall_time_s, "fall_time_s", "s", "when it fell, from the start of the simulation");
+  v(m.turns_done, "turns_done", "1",
+    "true turns while recording; positive in the commanded direction");
+  v(m.yaw_rate_mean, "yaw_rate_mean", "rad/s", "true turned angle over recorded time");
+  v(m.yaw_rate_error, "yaw_rate_error", "1", "yaw_rate_mean / commanded - 1");
+
+  auto& com = m.com;
+  v(com.distance_to_point_mean_mm, "com.distance_to_point_mean_mm", "mm",
+    "CoM to the commanded point, mean; null for a turn about another point");
+  v(com.distance_to_point_max_mm, "com.distance_to_point_max_mm", "mm", "largest");
+  v(com.distance_to_point_p95_mm, "com.distance_to_point_p95_mm", "mm", "95 % quantile");
+  v(com.radius_mean_mm, "com.radius_mean_mm", "mm", "CoM to its own mean point, mean");
+  v(com.radius_max_mm, "com.radius_max_mm", "mm", "largest");
+  v(com.radius_variance_mm2, "com.radius_variance_mm2", "mm^2", "unbiased variance");
+  v(com.circle_radius_mm, "com.circle_radius_mm", "mm",
+    "CoM to the centre of its least-squares circle, mean");
+  v(com.circle_variance_mm2, "com.circle_variance_mm2", "mm^2", "unbiased variance");
+  v(com.circle_centre_x_mm, "com.circle_centre_x_mm", "mm",
+    "that centre, from the commanded point");
+  v(com.circle_centre_y_mm, "com.circle_centre_y_mm", "mm",
+    "that centre, from the commanded point");
+  v(com.peak_to_peak_x_mm, "com.peak_to_peak_x_mm", "mm",
+    "range of the CoM's x in 10 s, mean over the record");
+  v(com.peak_to_peak_y_mm, "com.peak_to_peak_y_mm", "mm", "the same along y");
+  v(com.drift_per_turn_mm, "com.drift_per_turn_mm", "mm",
+    "net move of the CoM's one-turn average, per turn");
+  v(com.body_bias_mm_s, "com.body_bias_mm_s", "mm/s",
+    "mean CoM velocity in heading axes less the command; draws a circle of radius bias / yaw rate");
+  v(com.body_bias_x_mm_s, "com.body_bias_x_mm_s", "mm/s", "forwards");
+  v(com.body_bias_y_mm_s, "com.body_bias_y_mm_s", "mm/s", "to the left");
+
+  auto& attitude = m.attitude;
+  v(attitude.roll_mean, "attitude.roll_mean", "rad", "of the trunk, true");
+  v(attitude.roll_variance, "attitude.roll_variance", "rad^2", "unbiased");
+  v(attitude.pitch_mean, "attitude.pitch_mean", "rad", "nose up is negative");
+  v(attitude.pitch_variance, "attitude.pitch_variance", "rad^2", "unbiased");
+
+  auto& acceleration = m.acceleration;
+  v(acceleration.x_variance, "acceleration.x_variance", "(m/s^2)^2",
+    "trunk origin along world x, zero-phase 20 Hz Butterworth");
+  v(acceleration.y_variance, "acceleration.y_variance", "(m/s^2)^2", "along world y");
+  v(acceleration.roll_variance, "acceleration.roll_variance", "(rad/s^2)^2",
+    "about the body's x axis, same filter");
+  v(acceleration.pitch_variance, "acceleration.pitch_variance", "(rad/s^2)^2",
+    "about the body's y axis");
+
+  v(m.estimator.position_error_mm, "estimator.position_error_mm", "mm",
+    "estimated to true trunk position, horizontal, mean");
+  v(m.estimator.yaw_error_rad, "estimator.yaw_error_rad", "rad", "mean size");
+
+  auto& timing = m.timing;
+  v(timing.tick_us_median, "timing.tick_us_median", "us", "one controller tick, wall clock");
+  v(timing.tick_us_p99, "timing.tick_us_p99", "us", "99 % quantile");
+  v(timing.tick_us_max, "timing.tick_us_max", "us", "largest");
+  v(timing.mpc_us_median, "timing.mpc_us_median", "us", "one MPC solution");
+  v(timing.wbc_us_median, "timing.wbc_us_median", "us", "one whole-body solution");
+  v(timing.physics_step_us_median, "timing.physics_step_us_median", "us", "one physics step");
+  v(timing.real_time_factor, "timing.real_time_factor", "1", "simulated over wall-clock time");
+
+  auto& context = m.context;
+  v(context.robot, "context.robot", "", "name, or path of the MJCF file");
+  v(context.terrain, "context.terrain", "", "plant.terrain");
+  v(context.controller, "context.controller", "", "bundle of switches");
+  v(context.estimator, "context.estimator", "", "estimation.source");
+  v(context.reference, "context.reference", "", "path.reference");
+  v(context.tracker, "context.tracker", "", "path.tracker");
+  v(context.foot_model, "context.foot_model", "", "foot.model");
+  v(context.com_planner, "context.com_planner", "", "com.planner");
+  v(context.duty, "context.duty", "1", "gait.duty");
+  v(context.period, "context.period", "s", "gait.period");
+  v(context.torsional_friction, "context.torsional_friction", "m", "plant.torsional_friction");
+  v(context.friction, "context.friction", "1", "plant.friction");
+  v(context.seed, "context.seed", "", "run.seed");
+  v(context.duration_s, "context.duration_s", "s", "simulated time, from standing to the end");
+  v(context.mujoco, "context.mujoco", "", "version of the physics");
+  v(context.commit, "context.commit", "", "of this program's source");
+  v(context.version, "context.version", "", "of this program");
+  v(context.sensors, "context.sensors", "", "noisy or ideal");
+  v(context.yaw_rate, "context.yaw_rate", "rad/s", "commanded");
+  v(context.velocity_x, "context.velocity_x", "m/s", "commanded, forwards");
+  v(context.velocity_y, "context.velocity_y", "m/s", "commanded, to the left");
+  v(context.point_x, "context.point_x", "m", "commanded point, world");
+  v(context.point_y, "context.point_y", "m", "commanded point, world");
+}
+
+}  // namespace pirouette

@@ -1,0 +1,241 @@
+#include "pirouette/experiment/trial.hpp"
+
+#include <chrono>
+#include <cmath>
+
+#include "pirouette/config/validate.hpp"
+#include "pirouette/controller/spin_controller.hpp"
+#include "pirouette/plant/plant.hpp"
+
+#ifndef PIROUETTE_VERSION
+#define PIROUETTE_VERSION "unknown"
+#endif
+#ifndef PIROUETTE_COMMIT
+#define PIROUETTE_COMMIT "unknown"
+#endif
+
+namespace pirouette {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+constexpr double kFallTilt = 1.0;           // rad
+constexpr double kFallHeight = 0.1;         // m
+constexpr double kStandDownTime = 1.0;      // s
+constexpr double kTimePerStillTurn = 10.0;  // s
+constexpr double kProgressPeriod = 0.1;     // s, simulated
+
+/// When what happens, in control ticks.
+struct Schedule {
+  explicit Schedule(const Config& config)
+      : rate(config.control.rate),
+        command(ticks(config.gait.stand_time)),
+        record(command + ticks(config.run.settle_time)),
+        end(record + ticks(recorded_time(config))) {}
+
+  static double recorded_time(const Config& config) {
+    const double yaw_rate = std::abs(config.run.rate);
+    return config.run.turns * (yaw_rate > 0.0 ? 2.0 * kPi / yaw_rate : kTimePerStillTurn);
+  }
+  std::int64_t ticks(double seconds) const { return std::llround(seconds * rate); }
+  double seconds(std::int64_t tick) const { return static_cast<double>(tick) / rate; }
+
+  double rate;           ///< Hz
+  std::int64_t command;  ///< first tick of the motion
+  std::int64_t record;   ///< first recorded tick
+  std::int64_t end;      ///< last tick
+};
+
+/// The commanded point is run.point in the world, not where the robot happens to stand.
+bool has_fixed_point(const RunConfig& run) {
+  return run.fixed_point || run.start_offset != std::array{0.0, 0.0} || run.start_yaw_deg != 0.0;
+}
+
+MotionCommand motion_command(const RunConfig& run) {
+  MotionCommand command;
+  command.walk = true;
+  command.v_H = Vec2(run.velocity[0], run.velocity[1]);
+  command.yaw_rate = run.rate;
+  if (has_fixed_point(run)) {
+    command.point = Vec2(run.point[0], run.point[1]);
+    command.heading = 0.0;
+  }
+  return command;
+}
+
+bool has_fallen(const PlantTruth& truth) {
+  const Vec3 up = truth.base.R_WB.col(2);
+  const double upright = up.dot(truth.ground_normal_W);
+  const double height = truth.p_WG.z() - truth.ground_height;
+  // Written so that a value that is not a number counts as a fall.
+  return !(upright > std::cos(kFallTilt) && height > kFallHeight && truth.p_WG.allFinite() &&
+           truth.v_WG_W.allFinite());
+}
+
+RunContext describe_run(const Config& config, const CommandedMotion& commanded) {
+  RunContext c;
+  c.robot = config.robot;
+  c.terrain = config.plant.terrain;
+  c.controller = config.controller;
+  c.estimator = enum_name(config.estimation.source);
+  c.reference = enum_name(config.path.reference);
+  c.tracker = enum_name(config.path.tracker);
+  c.foot_model = enum_name(config.foot.model);
+  c.com_planner = enum_name(config.com.planner);
+  c.duty = config.gait.duty;
+  c.period = config.gait.period;
+  c.torsional_friction = config.plant.torsional_friction;
+  c.friction = config.plant.friction;
+  c.seed = config.run.seed;
+  c.mujoco = physics_version();
+  c.commit = commit();
+  c.version = version();
+  c.sensors = config.plant.sensors.ideal ? "ideal" : "noisy";
+  c.yaw_rate = commanded.yaw_rate;
+  c.velocity_x = commanded.v_H.x();
+  c.velocity_y = commanded.v_H.y();
+  c.point_x = commanded.point.x();
+  c.point_y = commanded.point.y();
+  return c;
+}
+
+class Trial {
+ public:
+  Trial(const Config& config, const TrialOptions& options, Plant plant, SpinController controller)
+      : config_(config),
+        options_(options),
+        schedule_(config),
+        plant_(std::move(plant)),
+        controller_(std::move(controller)),
+        motion_(motion_command(config.run)) {
+    const BaseTruth& start = plant_.truth().base;
+    controller_.reset({start.p_WB, start.R_WB});
+    commanded_ = {motion_.point.value_or(Vec2::Zero()), motion_.v_H, motion_.yaw_rate};
+    yaw_.reset(rpy_from_rotation(start.R_WB).yaw);
+  }
+
+  TrialResult run() {
+    start_ = Clock::now();
+    for (tick_ = 0; tick_ <= schedule_.end; ++tick_) {
+      const PlantTruth& truth = plant_.truth();
+      if (has_fallen(truth) || gave_up()) {
+        fall_time_ = schedule_.seconds(tick_);
+        break;
+      }
+      yaw_.update(rpy_from_rotation(truth.base.R_WB).yaw);
+      if (tick_ == schedule_.command) begin_motion(truth);
+      const JointCommand& command = tick(tick_ < schedule_.command ? MotionCommand{} : motion_);
+      log(truth);
+      if (!report(truth)) return {.metrics = {}, .interrupted = true};
+      if (tick_ < schedule_.end) plant_.advance(command);
+    }
+    return {.metrics = summarise(), .interrupted = false};
+  }
+
+ private:
+  void begin_motion(const PlantTruth& truth) {
+    if (!motion_.point) commanded_.point = truth.p_WG.head<2>();
+    command_yaw_ = yaw_.value();
+  }
+
+  const JointCommand& tick(const MotionCommand& motion) {
+    const SensorReading reading = plant_.sense();
+    const Clock::time_point before = Clock::now();
+    const JointCommand& command = controller_.tick(reading, motion);
+    tick_us_.push_back(seconds_since(before) * 1e6);
+    const TickTiming& timing = controller_.timing();
+    if (timing.mpc_us > 0.0) mpc_us_.push_back(timing.mpc_us);
+    if (timing.wbc_us > 0.0) wbc_us_.push_back(timing.wbc_us);
+    return command;
+  }
+
+  bool gave_up() {
+    stood_down_ticks_ = is_stood_down(controller_.status()) ? stood_down_ticks_ + 1 : 0;
+    return stood_down_ticks_ > schedule_.ticks(kStandDownTime);
+  }
+
+  void log(const PlantTruth& truth) {
+    const TickTrace& trace = controller_.trace();
+    if (tick_ >= schedule_.record) record_.add(truth, yaw_.value(), trace.state);
+    constexpr double kRounding = 1e-9;
+    const double row_time = static_cast<double>(rows_) / config_.run.trace_rate;
+    if (options_.trace != nullptr && schedule_.seconds(tick_) >= row_time - kRounding) {
+      options_.trace->append({trace, truth, yaw_.value()});
+      ++rows_;
+    }
+  }
+
+  bool report(const PlantTruth& truth) {
+    const bool due = tick_ % schedule_.ticks(kProgressPeriod) == 0 || tick_ == schedule_.end;
+    if (!options_.progress || !due) return true;
+    TrialProgress progress;
+    progress.time = schedule_.seconds(tick_);
+    progress.duration = schedule_.seconds(schedule_.end);
+    progress.real_time_factor = progress.time / seconds_since(start_);
+    if (tick_ >= schedule_.command) {
+      const double direction = motion_.yaw_rate < 0.0 ? -1.0 : 1.0;
+      progress.turns = direction * (yaw_.value() - command_yaw_) / (2.0 * kPi);
+      progress.distance_to_point = (truth.p_WG.head<2>() - commanded_.point).norm();
+    }
+    return options_.progress(progress);
+  }
+
+  Metrics summarise() const {
+    const double wall = seconds_since(start_);
+    const double simulated = schedule_.seconds(std::min(tick_, schedule_.end));
+    Metrics m = evaluate(record_, commanded_, schedule_.rate);
+    m.fell = fall_time_.has_value();
+    m.fall_time_s = fall_time_;
+    m.timing = summarise_times(tick_us_, mpc_us_, wbc_us_);
+    m.timing.physics_step_us_median = plant_.physics_step_us_median();
+    m.timing.real_time_factor = simulated / wall;
+    m.context = describe_run(config_, commanded_);
+    m.context.duration_s = simulated;
+    return m;
+  }
+
+  const Config& config_;
+  const TrialOptions& options_;
+  Schedule schedule_;
+  Plant plant_;
+  SpinController controller_;
+  MotionCommand motion_;
+  CommandedMotion commanded_;
+  YawUnwrapper yaw_;
+  double command_yaw_ = 0.0;
+  MotionRecord record_;
+  std::vector<double> tick_us_, mpc_us_, wbc_us_;
+  std::int64_t tick_ = 0;
+  std::int64_t rows_ = 0;
+  std::int64_t stood_down_ticks_ = 0;
+  Number fall_time_;
+  Clock::time_point start_;
+};
+
+}  // namespace
+
+const char* version() { return PIROUETTE_VERSION; }
+const char* commit() { return PIROUETTE_COMMIT; }
+
+double trial_duration(const Config& config) {
+  const Schedule schedule(config);
+  return schedule.seconds(schedule.end);
+}
+
+Result<TrialResult> run_trial(const Config& config, const TrialOptions& options) {
+  Result<std::string> mjcf = resolve_robot(config);
+  if (!mjcf) return mjcf.errors();
+  const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
+  Result<SpinController> controller = SpinController::create(config, mjcf.value());
+  if (!controller) return controller.errors();
+  Result<Plant> plant =
+      Plant::create(config, mjcf.value(), start, radians(config.run.start_yaw_deg));
+  if (!plant) return plant.errors();
+  return Trial(config, options, std::move(plant).value(), std::move(controller).value()).run();
+}
+
+}  // namespace pirouette

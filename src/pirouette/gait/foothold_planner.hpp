@@ -1,0 +1,45 @@
+// Where each foot is to land while the body follows a planar twist.
+#pragma once
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/base/math.hpp"
+#include "pirouette/base/planar_twist.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/types/body_reference.hpp"
+#include "pirouette/types/foothold_plan.hpp"
+#include "pirouette/types/gait_phase.hpp"
+#include "pirouette/types/terrain_plane.hpp"
+
+namespace pirouette {
+
+/// m, where a point fixed to the body at `hip` will be after `t` seconds of the twist (`v`,
+/// `yaw_rate`), in the body's heading axes of now.
+/// [Zhu21] Eqs. (2)-(4), corrected (E1): docs/equations.md#eq-1
+Vec2 turning_foothold(const Vec2& hip, const Vec2& v, double yaw_rate, double t);
+
+struct FootholdInput {
+  GaitPhase gait;
+  PerLeg<Vec2> nominal_H =
+      PerLeg<Vec2>::filled(Vec2::Zero());  ///< m, foothold at mid-stance from the CoM, heading axes
+  PerLeg<Vec2> rolling_shift_H = PerLeg<Vec2>::filled(
+      Vec2::Zero());  ///< m, half the contact's travel in a stance, heading axes at mid-stance
+  double centre_offset = 0.0;  ///< m, sphere centre above the contact along the normal
+  Vec2 p_WG = Vec2::Zero();    ///< m, CoM
+  Vec2 v_WG_H = Vec2::Zero();  ///< m/s, measured velocity of the CoM, heading axes
+  double yaw = 0.0;            ///< rad
+  TwistCommand twist;
+  TerrainPlane plane;
+};
+
+/// Each foot lands so that it is at its nominal point in the middle of the coming stance.
+class FootholdPlanner {
+ public:
+  explicit FootholdPlanner(const FootholdConfig& config) : config_(config) {}
+
+  FootholdPlan update(const FootholdInput& in) const noexcept;
+
+ private:
+  FootholdConfig config_;
+};
+
+}  // namespace pirouette

@@ -1,0 +1,57 @@
+// The trot's clock: FR with RL, and FL with RR half a stride later.
+#pragma once
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/types/gait_phase.hpp"
+
+namespace pirouette {
+
+/// A leg's stride begins with its touchdown. The gait starts at the touchdown of FR and RL: with
+/// duty > 0.5 all four feet are down then. A foot that the schedule has in the air at the start
+/// stays down until its first lift-off. When the walk ends, feet in the air land on schedule and no
+/// other foot lifts. A foot that stays down reports mid-stance.
+class GaitClock {
+ public:
+  explicit GaitClock(const GaitConfig& config);
+
+  /// Phase `dt` seconds after the previous call; the first call with `walk` is the start itself.
+  GaitPhase update(bool walk, double dt) noexcept;
+
+  void reset() noexcept;
+
+  /// The leg's phase `t_ahead` >= 0 seconds after the last update, if the current walk, stop or
+  /// rest goes on at the current timing.
+  LegPhase phase_at(Leg leg, double t_ahead) const noexcept;
+
+  /// New timing: the period (s) from the next start of the stride on, the duty factor for each leg
+  /// from its next touchdown on, so no foot is caught in mid-air. Both at once while standing.
+  void set_timing(double period, double duty) noexcept;
+
+ private:
+  struct LegState {
+    double duty = 0.5;       ///< of the current stride
+    bool scheduled = false;  ///< follows the schedule; false: rests on the ground
+    int stride = 0;
+  };
+
+  double leg_cycle(Leg leg) const noexcept;
+  bool in_stance(Leg leg) const noexcept;
+  void start() noexcept;
+  void advance(double dt) noexcept;
+  void follow_or_rest() noexcept;
+  void adopt_timing() noexcept;
+  GaitPhase current() const noexcept;
+
+  double initial_period_;
+  double initial_duty_;
+  double period_ = 0.0;
+  double next_period_ = 0.0;
+  double next_duty_ = 0.0;
+  bool walking_ = false;
+  bool stopping_ = false;
+  double cycle_ = 0.0;  ///< in [0, 1), of FR and RL
+  PerLeg<LegState> legs_;
+};
+
+}  // namespace pirouette

@@ -1,0 +1,58 @@
+// Rigid-body model of any MJCF quadruped: the controller's own copy, without a world around it.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/base/math.hpp"
+#include "pirouette/base/result.hpp"
+#include "pirouette/types/leg_geometry.hpp"
+#include "pirouette/types/robot_state.hpp"
+
+namespace pirouette {
+
+inline constexpr int kDof = 18;  ///< 6 of the trunk, 12 joints
+
+using VecDof = Eigen::Matrix<double, kDof, 1>;
+using MatDof = Eigen::Matrix<double, kDof, kDof>;
+using Jacobian = Eigen::Matrix<double, 3, kDof>;
+
+/// Generalised velocity nu = [v_WB_W; w_WB_B; joint velocities FR FL RR RL, each abad hip knee].
+class RobotModel {
+ public:
+  /// Reads `mjcf`; the errors name the file and what was expected (legs, joints, foot spheres).
+  static Result<RobotModel> load(const std::string& mjcf);
+
+  RobotModel(RobotModel&&) noexcept;
+  RobotModel& operator=(RobotModel&&) noexcept;
+  ~RobotModel();
+
+  double mass() const;                        ///< kg
+  const PerLeg<LegGeometry>& legs() const;
+  /// kg m^2, of the whole robot about its CoM, trunk axes, at joint angles `q`.
+  Mat3 inertia(const PerLeg<Vec3>& q);
+  /// m, CoM in trunk axes at joint angles `q`.
+  Vec3 com(const PerLeg<Vec3>& q);
+
+  /// Evaluates everything below at `state` (trunk pose and velocity, joints). No allocation.
+  void update(const RobotState& state) noexcept;
+
+  Vec3 p_WG() const;    ///< m
+  Vec3 v_WG_W() const;  ///< m/s
+  const MatDof& mass_matrix() const;           ///< with the rotors' reflected inertia
+  const VecDof& bias() const;                  ///< N, N m: Coriolis, centrifugal and gravity
+  const Jacobian& com_jacobian() const;        ///< v_WG_W = J nu
+  const Vec3& com_bias() const;                ///< m/s^2: Jdot nu of the CoM
+  const Jacobian& foot_jacobian(Leg leg) const;     ///< sphere centre: v_WF_W = J nu
+  const Jacobian& shank_jacobian(Leg leg) const;    ///< w_WS_W = J nu
+  const Vec3& foot_bias(Leg leg) const;        ///< m/s^2: Jdot nu of the sphere centre
+  const Vec3& shank_bias(Leg leg) const;       ///< rad/s^2: Jdot nu of the shank's angular velocity
+
+ private:
+  struct Impl;
+  explicit RobotModel(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace pirouette

@@ -1,0 +1,63 @@
+#include "pirouette/plant/scene.hpp"
+
+#include <algorithm>
+#include <array>
+
+namespace pirouette {
+namespace {
+
+constexpr int kFootContactDimensions = 6;  ///< normal, two sliding, torsion, two rolling
+
+void remove_world_geoms(mjSpec& spec) {
+  const mjsBody* world = mjs_findBody(&spec, "world");
+  while (mjsElement* geom = mjs_firstChild(world, mjOBJ_GEOM, /*recurse=*/0))
+    mjs_delete(&spec, geom);
+}
+
+mjOption physics_options(const PlantConfig& config) {
+  mjOption option;
+  mj_defaultOption(&option);
+  option.timestep = config.timestep;
+  option.integrator = mjINT_IMPLICITFAST;
+  option.cone = mjCONE_ELLIPTIC;
+  option.impratio = config.impratio;
+  Eigen::Map<Vec3>(option.gravity) = Vec3(0.0, 0.0, -kGravity);
+  // The motors are the plant's own; a failed simulation must show, not start again.
+  option.disableflags |= mjDSBL_ACTUATION | mjDSBL_SENSOR | mjDSBL_AUTORESET;
+  return option;
+}
+
+}  // namespace
+
+Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
+                          const std::string& mjcf) {
+  std::array<char, 1024> message{};
+  const SpecPtr spec(
+      mj_parseXML(mjcf.c_str(), nullptr, message.data(), static_cast<int>(message.size())));
+  if (!spec) return Error{mjcf, 0, "", message.data()};
+
+  const Vec3 friction(config.friction, config.torsional_friction, config.rolling_friction);
+  remove_world_geoms(*spec);
+  terrain.add_to(*spec, friction);
+  spec->option = physics_options(config);
+
+  Scene scene;
+  scene.model.reset(mj_compile(spec.get(), nullptr));
+  if (!scene.model) return Error{mjcf, 0, "", mjs_getError(spec.get())};
+  mjModel& model = *scene.model;
+
+  Result<RobotMap> map = map_robot(model, mjcf);
+  if (!map) return map.errors();
+  scene.map = map.value();
+
+  const int foot_priority =
+      1 + *std::max_element(model.geom_priority, model.geom_priority + model.ngeom);
+  for (const LegMap& leg : scene.map.legs) {
+    Eigen::Map<Vec3>(model.geom_friction + 3 * leg.foot_geom) = friction;
+    model.geom_condim[leg.foot_geom] = kFootContactDimensions;
+    model.geom_priority[leg.foot_geom] = foot_priority;
+  }
+  return scene;
+}
+
+}  // namespace pirouette

@@ -1,0 +1,37 @@
+// The robot of an MJCF file on a terrain, as a compiled MuJoCo model.
+#pragma once
+
+#include <mujoco/mujoco.h>
+
+#include <memory>
+#include <string>
+
+#include "pirouette/base/result.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/model/robot_map.hpp"
+#include "pirouette/plant/terrain.hpp"
+
+namespace pirouette {
+
+struct MujocoDeleter {
+  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
+  void operator()(mjModel* model) const { mj_deleteModel(model); }
+  void operator()(mjData* data) const { mj_deleteData(data); }
+};
+using SpecPtr = std::unique_ptr<mjSpec, MujocoDeleter>;
+using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
+using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
+
+struct Scene {
+  ModelPtr model;
+  RobotMap map;
+};
+
+/// Puts the robot of `mjcf` on `terrain`. The world is pirouette's alone: geoms that the file fixes
+/// to the world (a floor of its own), its physics options and its actuators do not count. The feet
+/// take the configured friction with a priority above every other geom's, so that MuJoCo uses
+/// exactly these values wherever a foot touches.
+Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
+                          const std::string& mjcf);
+
+}  // namespace pirouette

@@ -1,0 +1,32 @@
+// What the body should do now: from path, tracker, terrain and CoM planner to MPC and WBC.
+#pragma once
+
+#include "pirouette/base/math.hpp"
+#include "pirouette/base/rotation.hpp"
+
+namespace pirouette {
+
+/// A moment of the path reference (path/): where the CoM should be if nothing had gone wrong.
+struct PathPoint {
+  Vec2 p_WG = Vec2::Zero();   ///< m
+  double yaw = 0.0;           ///< rad, unwrapped
+  Vec2 v_H = Vec2::Zero();    ///< m/s, feed-forward velocity in the reference's heading axes
+  double yaw_rate = 0.0;      ///< rad/s
+};
+
+/// The tracker's velocity command, in the robot's own heading axes.
+struct TwistCommand {
+  Vec2 v_H = Vec2::Zero();  ///< m/s
+  double yaw_rate = 0.0;    ///< rad/s
+};
+
+struct BodyReference {
+  Vec3 p_WG = Vec3::Zero();     ///< m, CoM
+  Vec3 v_WG_W = Vec3::Zero();   ///< m/s, world axes
+  Vec3 a_WG_W = Vec3::Zero();   ///< m/s^2, world axes
+  RollPitchYaw rpy;             ///< rad, parallel to the terrain; yaw unwrapped
+  Vec3 w_WB_W = Vec3::Zero();   ///< rad/s, world axes, matching roll and pitch on a slope (E16)
+  TwistCommand twist;           ///< carried over the MPC's horizon
+};
+
+}  // namespace pirouette

@@ -1,0 +1,32 @@
+// What the controller sends to the joints: tau_motor = tau + kp (q - q_measured) + kd (dq - dq_measured).
+#pragma once
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/base/math.hpp"
+
+namespace pirouette {
+
+struct LegCommand {
+  Vec3 q = Vec3::Zero();    ///< rad
+  Vec3 dq = Vec3::Zero();   ///< rad/s
+  Vec3 kp = Vec3::Zero();   ///< N m/rad
+  Vec3 kd = Vec3::Zero();   ///< N m s/rad
+  Vec3 tau = Vec3::Zero();  ///< N m, feed-forward
+};
+
+using JointCommand = PerLeg<LegCommand>;
+
+/// What the controller is doing, and why it stopped if it did.
+enum class ControllerStatus : int {
+  kStanding = 0,        ///< on four feet
+  kWalking = 1,
+  kFallen = 2,          ///< roll, pitch or height out of bounds: damped stand-down
+  kBadInput = 3,        ///< a sensor value was not finite for too long: damped stand-down
+  kSolverFailed = 4,    ///< MPC or WBC failed too often in a row: damped stand-down
+  kBadCommand = 5,      ///< the computed command was not finite: damped stand-down
+};
+
+/// True for every status that latches the damped stand-down.
+constexpr bool is_stood_down(ControllerStatus s) { return static_cast<int>(s) >= 2; }
+
+}  // namespace pirouette

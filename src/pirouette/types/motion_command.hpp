@@ -1,0 +1,20 @@
+// What the user asks of the robot.
+#pragma once
+
+#include <optional>
+
+#include "pirouette/base/math.hpp"
+
+namespace pirouette {
+
+/// A planar twist of the CoM in heading axes. Zero velocity and a yaw rate: a spin. Zero twist with
+/// `walk`: trotting on the spot. The signed turning radius is velocity.x / yaw_rate.
+struct MotionCommand {
+  bool walk = false;            ///< false: stand on four feet
+  Vec2 v_H = Vec2::Zero();      ///< m/s, in heading axes
+  double yaw_rate = 0.0;        ///< rad/s
+  std::optional<Vec2> point;    ///< m, world: where the reference starts; absent: where the CoM stands when walking begins
+  std::optional<double> heading;  ///< rad, world: heading of the reference at its start; absent: the robot's own
+};
+
+}  // namespace pirouette
