@@ -5,8 +5,13 @@ set(_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pirouette)
 
 install(TARGETS pirouette pirouette_sim EXPORT pirouetteTargets)
 install(EXPORT pirouetteTargets NAMESPACE pirouette:: DESTINATION ${_package_dir})
-# The wheels' shared libraries stay where they are.
-set_target_properties(pirouette_program PROPERTIES INSTALL_RPATH_USE_LINK_PATH ON)
+# The wheels' shared libraries stay where they are. CMake's own INSTALL_RPATH_USE_LINK_PATH leaves out
+# what lies inside the source tree, as .venv does.
+set_target_properties(
+  pirouette_program
+  PROPERTIES
+    INSTALL_RPATH "$<TARGET_FILE_DIR:MuJoCo::MuJoCo>;$<TARGET_FILE_DIR:eiquadprog::eiquadprog>"
+)
 install(TARGETS pirouette_program)
 
 install(

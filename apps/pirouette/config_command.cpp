@@ -7,15 +7,16 @@
 #include "pirouette/config/toml.hpp"
 #include "pirouette/experiment/metrics.hpp"
 #include "pirouette/experiment/trace_file.hpp"
+#include "pirouette/experiment/trial.hpp"
 
 namespace pirouette::app {
 
 ConfigCommand::ConfigCommand(CLI::App& app) {
   command_ = app.add_subcommand("config", "Check, show and document the parameters");
-  command_->require_subcommand(1);
+  command_->require_subcommand(0, 1);
   check_ =
       command_->add_subcommand("check", "Say everything that is wrong with configuration files");
-  check_->add_option("files", files_, "TOML files")->required()->type_name("FILE");
+  check_->add_option("FILE", files_, "TOML files")->required();
   dump_ = command_->add_subcommand("dump", "Print the resolved configuration as TOML");
   dump_options_.add_run(*dump_);
   dump_options_.add_common(*dump_);
@@ -31,10 +32,11 @@ int ConfigCommand::check() const {
     ConfigSources sources;
     sources.file = file;
     const Result<Config> config = load_config(sources);
-    if (config) {
-      std::cout << file << ": ok\n";
-    } else {
-      errors.insert(errors.end(), config.errors().begin(), config.errors().end());
+    Errors found = config ? check_trial(config.value()) : config.errors();
+    if (found.empty()) std::cout << file << ": ok\n";
+    for (Error& error : found) {
+      if (error.file.empty()) error.file = file;
+      errors.push_back(std::move(error));
     }
   }
   return errors.empty() ? kDone : report(errors);
@@ -50,9 +52,15 @@ int ConfigCommand::dump() const {
 int ConfigCommand::run() const {
   if (check_->parsed()) return check();
   if (dump_->parsed()) return dump();
-  if (doc_->parsed()) std::cout << config_markdown();
-  if (trace_->parsed()) std::cout << trace_markdown();
-  if (metrics_->parsed()) std::cout << metrics_markdown();
+  if (doc_->parsed()) {
+    std::cout << config_markdown();
+  } else if (trace_->parsed()) {
+    std::cout << trace_markdown();
+  } else if (metrics_->parsed()) {
+    std::cout << metrics_markdown();
+  } else {
+    return report({{"config", 0, "", "needs one of check, dump, doc, trace, metrics"}});
+  }
   return kDone;
 }
 

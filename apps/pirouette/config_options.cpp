@@ -105,13 +105,20 @@ Result<Config> ConfigOptions::load_with(const std::vector<std::string>& override
   if (file_) sources.file = *file_;
   Result<Config> config = load_config(sources);
   if (config) return config;
-  Errors errors = config.errors();
+  return in_typed_words(config.errors());
+}
+
+Errors ConfigOptions::in_typed_words(Errors errors) const {
   for (Error& error : errors) {
-    if (error.file != "--set") continue;
+    if (error.file == "--robot" || error.file == "--controller") error.key.clear();
+    if (!error.file.empty() && error.file != "--set") continue;
     for (const Shortcut& s : shortcuts_) {
       if (s.text && s.key == error.key) error = {s.option, 0, "", error.message};
     }
-    if (radius_ && error.key == "run.velocity") error = {"--radius", 0, "", error.message};
+    if (radius_ && error.key == "run.velocity") {
+      error = {"--radius", 0, "",
+               "given " + as_toml(*radius_) + "; run.velocity: " + error.message};
+    }
   }
   return errors;
 }

@@ -22,8 +22,10 @@ class ConfigOptions {
   /// --radius.
   void add_radius(CLI::App& command);
 
-  /// Everything that is wrong names the option that was typed.
   Result<Config> load() const;
+
+  /// Errors about a parameter that was given by an option of its own, naming that option.
+  Errors in_typed_words(Errors errors) const;
 
  private:
   /// An option that stands for a parameter.

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
+#include <sstream>
 #include <string>
 
 #include "config_command.hpp"
@@ -15,7 +16,13 @@
 namespace pirouette::app {
 
 int report(const Errors& errors) {
-  for (const Error& error : errors) std::cerr << "error: " << error.to_string() << "\n";
+  for (const Error& error : errors) {
+    // The parsers of others put line breaks into their messages.
+    std::istringstream words(error.to_string());
+    std::cerr << "error:";
+    for (std::string word; words >> word;) std::cerr << " " << word;
+    std::cerr << "\n";
+  }
   return kBadUsage;
 }
 
@@ -86,7 +93,9 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);
-    return report({{"", 0, "", error.what()}});
+    std::string verb;
+    for (const CLI::App* command : app.get_subcommands()) verb += command->get_name() + " ";
+    return report({{"", 0, "", error.what() + ("; see pirouette " + verb + "--help")}});
   }
   if (spin.chosen()) return spin.run();
   if (turn.chosen()) return turn.run();

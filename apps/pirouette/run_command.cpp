@@ -111,7 +111,7 @@ int RunCommand::run() const {
   std::signal(SIGINT, remember_signal);
   std::signal(SIGTERM, remember_signal);
   const Result<TrialResult> trial = simulate(config, trace.value(), !quiet_);
-  if (!trial) return report(trial.errors());
+  if (!trial) return report(config_options_.in_typed_words(trial.errors()));
   if (trial.value().interrupted) {
     std::cerr << "interrupted: no run folder was written\n";
     return kSignal + interrupt_signal;

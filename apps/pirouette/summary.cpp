@@ -55,6 +55,10 @@ void add_context(Table& table, const RunContext& c) {
   std::string command = plain(c.yaw_rate) + " rad/s";
   if (c.velocity_x != 0.0 || c.velocity_y != 0.0) {
     command += ", " + plain(c.velocity_x) + " m/s forwards, " + plain(c.velocity_y) + " m/s left";
+    if (c.yaw_rate != 0.0) {
+      const double radius = std::hypot(c.velocity_x, c.velocity_y) / std::abs(c.yaw_rate);
+      command += ": radius " + plain(radius) + " m";
+    }
   }
   table.row("command", command);
   table.row("duration", plain(c.duration_s) + " s");

@@ -28,9 +28,9 @@ TEST(MiniCheetah, HasTheMassAndCentreOfMassOfItsProvenance) {
   EXPECT_NEAR(p_BG.z(), -0.009, 0.001);
 }
 
-class EveryTerrain : public testing::TestWithParam<const char*> {};
+class RobotOnEveryTerrain : public testing::TestWithParam<const char*> {};
 
-TEST_P(EveryTerrain, StartsWithFeetTouchingBelowTheHipsAndTheComWhereAsked) {
+TEST_P(RobotOnEveryTerrain, StartsWithFeetTouchingBelowTheHipsAndTheComWhereAsked) {
   const Config config = ideal_config(GetParam());
   const Terrain terrain(parse_terrain(config.plant.terrain).value(), 1);
   for (const double yaw : {0.0, 0.7, 1.5708, -2.5}) {
@@ -50,7 +50,7 @@ TEST_P(EveryTerrain, StartsWithFeetTouchingBelowTheHipsAndTheComWhereAsked) {
   }
 }
 
-TEST_P(EveryTerrain, CarriesARobotWithStiffJoints) {
+TEST_P(RobotOnEveryTerrain, CarriesARobotWithStiffJoints) {
   Plant plant = make_plant(ideal_config(GetParam()));
   const Vec3 start = plant.truth().p_WG;
   stand(plant, 2.0);
@@ -64,7 +64,7 @@ TEST_P(EveryTerrain, CarriesARobotWithStiffJoints) {
   EXPECT_NEAR(ground_force.head<2>().norm(), 0.0, 0.02 * kMass * kGravity);
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EveryTerrain,
+INSTANTIATE_TEST_SUITE_P(Kinds, RobotOnEveryTerrain,
                          testing::Values("flat", "slope:10", "slope:25", "stairs:0.03x0.20",
                                          "stairs:0.1x0.3", "rough:0.04"));
 

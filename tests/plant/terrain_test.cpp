@@ -118,10 +118,10 @@ TEST(Terrain, RoughGroundFollowsItsSeedAlone) {
   EXPECT_NEAR(make_terrain("rough:0.04", 1).height({0.0, 0.0}), 0.01221903, 1e-8);
 }
 
-class EveryTerrain : public testing::TestWithParam<const char*> {};
+class EveryGround : public testing::TestWithParam<const char*> {};
 
 // MuJoCo's ray caster is the oracle for the shape that the feet meet.
-TEST_P(EveryTerrain, HasTheHeightThatARayFromAboveFinds) {
+TEST_P(EveryGround, HasTheHeightThatARayFromAboveFinds) {
   const Terrain terrain = make_terrain(GetParam(), 3);
   const ModelPtr model = compile_ground(terrain);
   ASSERT_NE(model, nullptr);
@@ -140,7 +140,7 @@ TEST_P(EveryTerrain, HasTheHeightThatARayFromAboveFinds) {
   }
 }
 
-TEST_P(EveryTerrain, BearsABallAtItsBallHeight) {
+TEST_P(EveryGround, BearsABallAtItsBallHeight) {
   constexpr double kRadius = 0.0225;
   const Terrain terrain = make_terrain(GetParam(), 3);
   const SpecPtr spec(mj_makeSpec());
@@ -164,7 +164,7 @@ TEST_P(EveryTerrain, BearsABallAtItsBallHeight) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Kinds, EveryTerrain,
+INSTANTIATE_TEST_SUITE_P(Kinds, EveryGround,
                          testing::Values("flat", "slope:25", "stairs:0.05x0.2", "stairs:0x0.2",
                                          "rough:0.08", "rough:0"));
 

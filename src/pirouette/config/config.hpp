@@ -138,7 +138,7 @@ struct ComConfig {
   double swing_weight_min = 0.0;
   bool on_diagonal = false;
   double max_speed = 0.2;
-  double gain = 1.0;
+  double gain = 0.3;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -160,9 +160,9 @@ struct ComConfig {
 struct PathConfig {
   PathReferenceMode reference = PathReferenceMode::kAnchored;
   PathTracker tracker = PathTracker::kLqi;
-  std::array<double, 3> state_weight = {1.0, 1.0, 4.0};
+  std::array<double, 3> state_weight = {4.0, 4.0, 4.0};
   std::array<double, 3> input_weight = {1.0, 1.0, 1.0};
-  double integral_gain = 1.0;
+  double integral_gain = 2.0;
   double integral_limit = 0.08;
   double max_velocity_correction = 0.15;
   double max_yaw_rate_correction = 0.5;

@@ -8,8 +8,8 @@ constexpr int kPosition = 0;
 constexpr int kVelocity = 1;
 constexpr double kInitialVariance = 1e-4;
 // Absolute position is unobservable blind: the variance of a common shift of trunk and feet grows for ever.
-// Half of this limit is taken off that one direction whenever it is reached, so that an hour-long run loses no
-// precision; nothing else about the estimate changes.
+// Whenever it reaches this limit, that one direction is scaled to half the variance, so that an hour-long run
+// loses no precision. Scaling, unlike subtracting, keeps every covariance positive semidefinite.
 constexpr double kMaxPositionVariance = 1.0;
 
 constexpr int foot_state(Leg leg) { return 2 + static_cast<int>(index(leg)); }
@@ -94,9 +94,12 @@ OdometryEstimate LegOdometryFilter::update(const OdometryInput& in, double dt) n
   for (Covariance* P : {&P_horizontal_, &P_vertical_}) {
     *P = 0.5 * (*P + P->transpose().eval());
     if ((*P)(kPosition, kPosition) > kMaxPositionVariance) {
-      Eigen::Matrix<double, kStates, 1> shift = Eigen::Matrix<double, kStates, 1>::Ones();
-      shift(kVelocity) = 0.0;
-      *P -= 0.5 * kMaxPositionVariance * shift * shift.transpose();
+      // p becomes k p, and the feet keep their place relative to it.
+      Covariance scale = Covariance::Identity();
+      for (int i = 0; i < kStates; ++i) {
+        if (i != kVelocity) scale(i, kPosition) += std::sqrt(0.5) - 1.0;
+      }
+      *P = (scale * *P * scale.transpose()).eval();
     }
   }
 

@@ -36,6 +36,9 @@ struct OdometryEstimate {
 /// (p, v, c_FR, c_FL, c_RR, c_RL) per world axis; x and y share their covariance.
 class LegOdometryFilter {
  public:
+  static constexpr int kStates = 6;
+  using Covariance = Eigen::Matrix<double, kStates, kStates>;
+
   explicit LegOdometryFilter(const EstimationConfig& config) : config_(config) {
     reset(Vec3::Zero(), PerLeg<Vec3>{});
   }
@@ -43,10 +46,12 @@ class LegOdometryFilter {
   OdometryEstimate update(const OdometryInput& in, double dt) noexcept;
   void reset(const Vec3& p_WB, const PerLeg<Vec3>& p_WF);
 
+  /// Of (p, v, c_FR, c_FL, c_RR, c_RL) along x or y, and along z: for tests.
+  const Covariance& horizontal_covariance() const { return P_horizontal_; }
+  const Covariance& vertical_covariance() const { return P_vertical_; }
+
  private:
-  static constexpr int kStates = 6;
   using StateByAxis = Eigen::Matrix<double, kStates, 3>;
-  using Covariance = Eigen::Matrix<double, kStates, kStates>;
 
   void predict(const OdometryInput& in, double dt) noexcept;
   void place_lifted_feet(const OdometryInput& in) noexcept;

@@ -99,6 +99,7 @@ TraceFile::TraceFile(std::filesystem::path path)
     : path_(std::move(path)), stream_(path_, std::ios::binary | std::ios::trunc) {
   const std::string header = npy_header(0);
   stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
+  stream_.flush();
 }
 
 Result<TraceFile> TraceFile::create(const std::filesystem::path& path) {

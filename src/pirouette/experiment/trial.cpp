@@ -1,7 +1,9 @@
 #include "pirouette/experiment/trial.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 
 #include "pirouette/config/validate.hpp"
 #include "pirouette/controller/spin_controller.hpp"
@@ -103,14 +105,39 @@ RunContext describe_run(const Config& config, const CommandedMotion& commanded) 
   return c;
 }
 
+/// What a trial needs besides its config.
+struct Setup {
+  Plant plant;
+  SpinController controller;
+};
+
+Result<Setup> build(const Config& config) {
+  const Result<std::string> mjcf = resolve_robot(config);
+  if (!mjcf) return mjcf.errors();
+  Result<SpinController> controller = SpinController::create(config, mjcf.value());
+  const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
+  Result<Plant> plant =
+      Plant::create(config, mjcf.value(), start, radians(config.run.start_yaw_deg));
+  if (controller && plant) {
+    return Setup{std::move(plant).value(), std::move(controller).value()};
+  }
+  // Both read the robot's file: what is wrong with it is said once.
+  Errors errors = controller ? Errors{} : controller.errors();
+  const Errors more = plant ? Errors{} : plant.errors();
+  std::copy_if(more.begin(), more.end(), std::back_inserter(errors), [&](const Error& error) {
+    return controller || error.file != controller.errors().front().file;
+  });
+  return errors;
+}
+
 class Trial {
  public:
-  Trial(const Config& config, const TrialOptions& options, Plant plant, SpinController controller)
+  Trial(const Config& config, const TrialOptions& options, Setup setup)
       : config_(config),
         options_(options),
         schedule_(config),
-        plant_(std::move(plant)),
-        controller_(std::move(controller)),
+        plant_(std::move(setup.plant)),
+        controller_(std::move(setup.controller)),
         motion_(motion_command(config.run)) {
     const BaseTruth& start = plant_.truth().base;
     controller_.reset({start.p_WB, start.R_WB});
@@ -226,16 +253,15 @@ double trial_duration(const Config& config) {
   return schedule.seconds(schedule.end);
 }
 
+Errors check_trial(const Config& config) {
+  const Result<Setup> setup = build(config);
+  return setup ? Errors{} : setup.errors();
+}
+
 Result<TrialResult> run_trial(const Config& config, const TrialOptions& options) {
-  Result<std::string> mjcf = resolve_robot(config);
-  if (!mjcf) return mjcf.errors();
-  const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
-  Result<SpinController> controller = SpinController::create(config, mjcf.value());
-  if (!controller) return controller.errors();
-  Result<Plant> plant =
-      Plant::create(config, mjcf.value(), start, radians(config.run.start_yaw_deg));
-  if (!plant) return plant.errors();
-  return Trial(config, options, std::move(plant).value(), std::move(controller).value()).run();
+  Result<Setup> setup = build(config);
+  if (!setup) return setup.errors();
+  return Trial(config, options, std::move(setup).value()).run();
 }
 
 }  // namespace pirouette

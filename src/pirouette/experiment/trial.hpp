@@ -39,6 +39,9 @@ const char* commit();
 /// counts 10 s.
 double trial_duration(const Config& config);
 
+/// What would keep run_trial() from starting: the robot's file, its leg names, the terrain.
+Errors check_trial(const Config& config);
+
 /// Stands for gait.stand_time, then commands run.velocity and run.rate; records after
 /// run.settle_time until run.turns are due. Ends early when the robot falls: the trunk leans more
 /// than 1 rad from the terrain's normal, the CoM is lower than 0.1 m above ground, the truth is not

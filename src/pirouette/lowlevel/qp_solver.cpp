@@ -67,6 +67,10 @@ QpSolution QpSolver::solve() noexcept {
   cholesky.solveInPlace(p.x);
   w.slack.noalias() = p.C * p.x;
   w.slack -= p.lower;
+  if (!w.slack.allFinite()) {
+    p.x.setZero();
+    return {SolveStatus::kFailed, 0};
+  }
   if (w.slack.minCoeff() >= -kFeasibilityTolerance) return {SolveStatus::kUnconstrained, 0};
 
   w.negative_lower = -p.lower;

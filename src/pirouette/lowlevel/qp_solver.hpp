@@ -38,7 +38,7 @@ class QpSolver {
 
   /// The problem of `units` units, to be filled; its matrices keep their last values.
   Problem& prepare(int units) noexcept;
-  /// Solves the problem last prepared. On kFailed x holds the last finite iterate or zeros.
+  /// Solves the problem last prepared. On kFailed x is zero.
   QpSolution solve() noexcept;
 
  private:

@@ -1,0 +1,177 @@
+#!/bin/bash
+# The program as a user meets it: wrong command lines and configurations, interruption, the files of a run.
+#   cli_test.sh PROGRAM
+# Every wrong input exits with 2, says what is wrong in "error: ..." lines and leaves no file behind.
+set -u
+
+program=$(realpath "$1")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+failures=0
+
+fail() {
+  echo "FAILED: $*"
+  sed 's/^/    /' stderr
+  failures=$((failures + 1))
+}
+
+# wrong TEXT ARGUMENTS...: one error line that holds TEXT.
+wrong() { wrong_lines 1 "$@"; }
+
+# wrong_lines COUNT TEXT ARGUMENTS...: COUNT error lines, one of which holds TEXT, and nothing else.
+wrong_lines() {
+  local count=$1 text=$2 before after
+  shift 2
+  before=$(ls -A . sandbox)
+  (cd sandbox && "$program" "$@") > stdout 2> stderr
+  local code=$?
+  after=$(ls -A . sandbox)
+  [ $code -eq 2 ] || fail "exit code $code, not 2: $*"
+  [ -s stdout ] && fail "prints to stdout: $*"
+  grep -q -F -e "$text" stderr || fail "does not say \"$text\": $*"
+  [ "$(grep -c '^error: ' stderr)" -eq "$count" ] || fail "not $count error lines: $*"
+  [ "$(grep -c -v '^error: ' stderr)" -eq 0 ] || fail "other lines than errors: $*"
+  [ "$before" = "$after" ] || fail "leaves files behind: $*"
+}
+
+mkdir sandbox
+touch stdout stderr sandbox/file
+mkdir sandbox/thesis && echo years > sandbox/thesis/thesis.tex
+
+cat > sandbox/unknown_key.toml <<'TOML'
+[gait]
+perid = 0.5
+TOML
+cat > sandbox/wrong_type.toml <<'TOML'
+[gait]
+period = "half a second"
+TOML
+cat > sandbox/nan.toml <<'TOML'
+[mpc]
+weight_position = [2.0, nan, 50.0]
+TOML
+cat > sandbox/syntax.toml <<'TOML'
+[gait
+period = 0.5
+TOML
+cat > sandbox/three_things.toml <<'TOML'
+controller = "mti"
+[gait]
+duty = 2.0
+[foot]
+model = "cube"
+TOML
+echo '<mujoco><worldbody>' > sandbox/broken.xml
+echo '<mujoco><worldbody><body><geom size="1"/></body></worldbody></mujoco>' > sandbox/no_legs.xml
+echo 'not XML at all' > sandbox/text.xml
+
+# Command lines.
+wrong 'unknown verb "pirouet"' pirouet
+wrong '--bogus' --bogus
+wrong '--bogus' spin --bogus
+wrong 'extra' spin extra
+wrong '--rate' spin --rate
+wrong '--rate' spin --rate 1 --rate 2
+wrong '--rate: given "fast"' spin --rate fast
+wrong '--rate: given nan' spin --rate nan
+wrong '--rate: given inf' spin --rate inf
+wrong '--rate: given -99' spin --rate -99
+wrong '--turns: given 0' spin --turns 0
+wrong '--seed: given 1.5' spin --seed 1.5
+wrong '--point: given "1"' spin --point 1
+wrong '--start-offset: given "a,b"' spin --start-offset a,b
+wrong '--start-yaw-deg: given 720' spin --start-yaw-deg 720
+wrong '--sensors: given "perfect"' spin --sensors perfect
+wrong '--estimator: given "oracle"' spin --estimator oracle
+wrong '--controller: given "mti"' spin --controller mti
+wrong '--radius' turn
+wrong '--radius: given 100' turn --radius 100
+wrong '--radius' turn --radius wide
+wrong 'check, dump, doc' config
+wrong 'FILE' config check
+
+# Terrain and robot.
+wrong '--terrain: "moon"' spin --terrain moon
+wrong '--terrain: "slope:95"' spin --terrain slope:95
+wrong '--terrain: "stairs:0.03"' spin --terrain stairs:0.03
+wrong '--robot: given "centipede"' spin --robot centipede
+wrong '--robot: given "nowhere.xml"' spin --robot nowhere.xml
+wrong 'broken.xml' spin --robot broken.xml
+wrong 'text.xml' spin --robot text.xml
+wrong 'no_legs.xml' spin --robot no_legs.xml
+
+# Parameters.
+wrong 'gait.perid: unknown key; did you mean gait.period?' spin --set gait.perid=0.4
+wrong 'gait.period: given "long"' spin --set gait.period=long
+wrong 'gait.period: given nan' spin --set gait.period=nan
+wrong 'gait.duty' spin --set gait.duty=0.95
+wrong 'given "gait.period"' spin --set gait.period
+wrong 'plant.timestep' spin --set plant.timestep=0.0007
+wrong 'nowhere.toml: no such file' spin --config nowhere.toml
+wrong 'unknown_key.toml:2: gait.perid' spin --config unknown_key.toml
+wrong 'wrong_type.toml:2: gait.period' spin --config wrong_type.toml
+wrong 'nan.toml:2: mpc.weight_position' spin --config nan.toml
+wrong 'syntax.toml:1' spin --config syntax.toml
+wrong 'unknown_key.toml:2: gait.perid' config check unknown_key.toml
+wrong_lines 3 'three_things.toml:1: controller' spin --config three_things.toml
+wrong_lines 3 'three_things.toml:5: foot.model' config check three_things.toml
+wrong_lines 2 '--sensors' spin --sensors perfect --set gait.duty=2
+
+# The run folder.
+wrong '--out' spin --out ''
+wrong 'is a file' spin --out file
+wrong '--out' spin --out file/run
+wrong '--out' spin --out /proc/pirouette/run
+wrong 'with other things in it' spin --out thesis
+[ "$(cat sandbox/thesis/thesis.tex)" = years ] || fail 'touched a folder that is no run'
+
+# Ctrl-C, once the first line of progress is out.
+: > stderr
+"$program" spin --turns 1000 --out interrupted > stdout 2> stderr &
+pid=$!
+until [ -s stderr ]; do sleep 0.05; done
+kill -INT $pid
+wait $pid
+code=$?
+[ $code -eq 130 ] || fail "exit code $code after SIGINT, not 130"
+[ -z "$(ls -d interrupted* 2> /dev/null)" ] || fail 'an interrupted run leaves files behind'
+
+# A run, and the same again from what it left.
+short='--turns 0.05 --set run.settle_time=0.2'
+"$program" spin $short --json > stdout 2> stderr || fail 'a short spin'
+[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'metrics.json run.toml trace.npy' ] || fail 'run folder'
+cmp -s stdout runs/spin-flat-0.7-seed1/metrics.json || fail '--json prints something else'
+grep -q '^100 %' stderr || fail 'no progress on stderr'
+"$program" spin --config runs/spin-flat-0.7-seed1/run.toml --out again --quiet > stdout 2> stderr ||
+  fail 'a run from run.toml'
+[ -s stdout ] || [ -s stderr ] && fail '--quiet is not quiet'
+cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy || fail 'run.toml gives another trace'
+"$program" spin $short --seed 2 --out again > stdout 2> stderr || fail 'replacing a run'
+grep -q 'Run folder: again' stdout || fail 'the table does not name the run folder'
+cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy && fail 'another seed, the same trace'
+
+# A robot that cannot stand falls: exit code 1, and the run folder tells.
+"$program" spin --set plant.torque_scale=0.1 --out fallen > stdout 2> stderr
+code=$?
+[ $code -eq 1 ] || fail "exit code $code after a fall, not 1"
+grep -q '"fell": true' fallen/metrics.json || fail 'metrics.json does not tell of the fall'
+
+# Programs of other packages.
+mkdir bin
+printf '#!/bin/sh\necho "$#: $2"\nexit 7\n' > bin/pirouette-echo
+chmod +x bin/pirouette-echo
+PATH=$PWD/bin:$PATH "$program" echo --flag 'two words' > stdout 2> stderr
+[ $? -eq 7 ] || fail 'the exit code of pirouette-echo is lost'
+[ "$(cat stdout)" = '2: two words' ] || fail 'the arguments of pirouette-echo are lost'
+
+"$program" > stdout 2> stderr && grep -q 'Usage: pirouette' stdout || fail 'no help without a verb'
+"$program" --version > stdout 2> stderr && grep -q '^pirouette [0-9]' stdout || fail 'no --version'
+for table in doc trace metrics dump; do
+  "$program" config $table > stdout 2> stderr && [ -s stdout ] || fail "config $table"
+done
+"$program" config dump > own.toml && "$program" config check own.toml > stdout 2> stderr ||
+  fail 'its own dump is not a valid configuration'
+
+[ $failures -eq 0 ] && echo "all as expected" || echo "$failures failures"
+exit $((failures > 0))

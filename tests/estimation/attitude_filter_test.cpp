@@ -1,0 +1,134 @@
+#include "pirouette/estimation/attitude_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include "pirouette/base/rotation.hpp"
+#include "support/vectors.hpp"
+
+namespace pirouette {
+namespace {
+
+using test::distance;
+
+constexpr double kTick = 0.002;
+
+/// What a perfect accelerometer shows at rest.
+Vec3 gravity_B(const Mat3& R_WB) { return kGravity * R_WB.row(2).transpose(); }
+
+/// Angle between the estimated and the true vertical.
+double tilt_error(const Mat3& estimate, const Mat3& truth) {
+  return std::acos(std::clamp(estimate.row(2).dot(truth.row(2)), -1.0, 1.0));
+}
+
+TEST(AttitudeFilter, KeepsItsAttitudeAtRest) {
+  const Mat3 R_WB = rotation_from_rpy({0.2, -0.3, 1.1});
+  AttitudeFilter filter{EstimationConfig{}};
+  filter.reset(R_WB);
+  Attitude out;
+  for (int i = 0; i < 5000; ++i) {
+    out = filter.update({Vec3::Zero(), gravity_B(R_WB), Vec3::Zero(), i < 2500}, kTick);
+  }
+  EXPECT_LT(distance(out.R_WB, R_WB), 1e-11);  // rounding of 5000 products
+  EXPECT_LT(out.w_WB_B.norm(), 1e-12);
+}
+
+TEST(AttitudeFilter, IntegratesTheGyroExactlyOnSo3) {
+  EstimationConfig config;
+  config.attitude_time_constant = 1e12;  // gravity has no say
+  AttitudeFilter filter{config};
+  const Vec3 w_WB_B(0.4, -0.7, 1.3);
+  Attitude out;
+  for (int i = 0; i < 500; ++i) out = filter.update({w_WB_B, gravity_B(out.R_WB), Vec3::Zero()}, kTick);
+  EXPECT_LT(distance(out.R_WB, exp_so3(1.0 * w_WB_B)), 1e-10);
+}
+
+TEST(AttitudeFilter, LearnsTheGyroBiasAtRestShrunkTowardsNone) {
+  const EstimationConfig config;
+  AttitudeFilter filter{config};
+  const Vec3 bias(2e-4, -3e-4, 1e-4);
+  for (int n = 1; n <= 1000; ++n) {
+    const Attitude out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero(), true}, kTick);
+    const double share = n / (n + config.gyro_rest_samples);
+    ASSERT_LT(distance(filter.gyro_bias(), share * bias), 1e-15);
+    ASSERT_LT(distance(out.w_WB_B, (1.0 - share) * bias), 1e-15);
+  }
+}
+
+TEST(AttitudeFilter, TiltErrorDecaysWithTheTimeConstant) {
+  const EstimationConfig config;
+  const Mat3 truth = rotation_from_rpy({0.1, 0.05, 0.4});
+  for (const Vec3& axis : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.6, -0.8, 0.0)}) {
+    AttitudeFilter filter{config};
+    constexpr double kInitial = 1e-3;
+    filter.reset(exp_so3(kInitial * axis) * truth);
+    const int ticks = static_cast<int>(std::lround(config.attitude_time_constant / kTick));
+    Attitude out;
+    for (int i = 0; i < ticks; ++i) out = filter.update({Vec3::Zero(), gravity_B(truth), Vec3::Zero(), true}, kTick);
+    // (1 - dt / T)^(T / dt) against 1 / e: dt / 2T = 2.5e-4; sine against angle: 1e-7.
+    EXPECT_NEAR(tilt_error(out.R_WB, truth) / kInitial, std::exp(-1.0), 5e-4);
+  }
+}
+
+TEST(AttitudeFilter, FindsTheHorizontalGyroBiasWhileWalking) {
+  const EstimationConfig config;
+  AttitudeFilter filter{config};
+  const Vec3 bias(1e-3, -2e-3, 0.0);
+  Attitude out;
+  // Ten times the slower of the two time constants.
+  const int ticks = static_cast<int>(10.0 * config.gyro_bias_time_constant / kTick);
+  for (int i = 0; i < ticks; ++i) out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero()}, kTick);
+  EXPECT_LT(distance(filter.gyro_bias(), bias), 1e-6);
+  EXPECT_LT(tilt_error(out.R_WB, Mat3::Identity()), 1e-6);
+}
+
+TEST(AttitudeFilter, YawIsTheIntegralOfTheGyroBecauseNothingObservesIt) {
+  AttitudeFilter filter{EstimationConfig{}};
+  const Vec3 bias(0.0, 0.0, 5e-4);
+  Attitude out;
+  for (int i = 0; i < 50000; ++i) out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero()}, kTick);
+  EXPECT_NEAR(rpy_from_rotation(out.R_WB).yaw, 5e-4 * 50000 * kTick, 1e-9);
+  EXPECT_LT(filter.gyro_bias().norm(), 1e-12);
+}
+
+TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
+  constexpr double kRate = 2.0;                 // rad/s
+  const Vec3 w_WB_B(0.0, 0.0, kRate);
+  const Vec3 p_axis_B(0.008, 0.003, 0.0);       // m, trunk origin from the axis
+  const Vec3 a_B = w_WB_B.cross(w_WB_B.cross(p_axis_B));
+  const auto tilt_after_turning = [&](bool velocity_known) {
+    AttitudeFilter filter{EstimationConfig{}};
+    Mat3 truth = Mat3::Identity();
+    Attitude out;
+    for (int i = 0; i < 10000; ++i) {
+      const Vec3 v_WB_W = velocity_known ? Vec3(truth * w_WB_B.cross(p_axis_B)) : Vec3::Zero();
+      out = filter.update({w_WB_B, gravity_B(truth) + a_B, v_WB_W}, kTick);
+      truth = truth * exp_so3(kTick * w_WB_B);
+    }
+    return tilt_error(out.R_WB, truth);
+  };
+  // Heading advances by kRate * kTick between velocity and attitude: 4 mrad of 34 mm/s^2.
+  EXPECT_LT(tilt_after_turning(true), 1e-6);
+  // Otherwise gravity would seem to lean by the centripetal acceleration, 3.5 mrad, of which the
+  // bias estimate hides a part.
+  EXPECT_GT(tilt_after_turning(false), 1e-3);
+}
+
+TEST(AttitudeFilter, IgnoresTheAccelerometerInFreeFall) {
+  AttitudeFilter filter{EstimationConfig{}};
+  const Mat3 R_WB = rotation_from_rpy({0.1, 0.2, 0.3});
+  filter.reset(R_WB);
+  Attitude out;
+  for (int i = 0; i < 200; ++i) out = filter.update({Vec3::Zero(), Vec3(0.3, -0.2, 0.1), Vec3::Zero()}, kTick);
+  EXPECT_LT(distance(out.R_WB, R_WB), 1e-12);
+}
+
+TEST(AttitudeFilter, ForgetsItsBiasOnReset) {
+  AttitudeFilter filter{EstimationConfig{}};
+  filter.update({Vec3(0.01, 0.0, 0.0), gravity_B(Mat3::Identity()), Vec3::Zero(), true}, kTick);
+  EXPECT_GT(filter.gyro_bias().norm(), 0.0);
+  filter.reset(Mat3::Identity());
+  EXPECT_EQ(filter.gyro_bias(), Vec3::Zero());
+}
+
+}  // namespace
+}  // namespace pirouette
