@@ -22,6 +22,14 @@ std::string shown(const Number& value, const char* unit, int digits = 3, double 
   return *unit == '\0' ? text : std::string(text) + " " + unit;
 }
 
+/// `value` with `decimals` behind the point, and its unit; "-" when absent.
+std::string fixed(const Number& value, const char* unit, int decimals) {
+  if (!value || !std::isfinite(*value)) return "-";
+  char text[64];
+  std::snprintf(text, sizeof text, "%.*f%s%s", decimals, *value, *unit == '\0' ? "" : " ", unit);
+  return text;
+}
+
 std::string plain(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", value);
@@ -67,9 +75,13 @@ void add_context(Table& table, const RunContext& c) {
 void add_motion(Table& table, const Metrics& m) {
   const ComMetrics& com = m.com;
   table.title(m.fell ? "Measured until the robot fell" : "Measured");
-  if (m.fell) table.row("FELL", "after " + shown(m.fall_time_s, "s", 4));
-  table.row("turns", shown(m.turns_done, "", 4));
-  table.row("yaw rate", shown(m.yaw_rate_mean, "rad/s", 4) + ", error " +
+  if (m.fell) table.row("FELL", "after " + fixed(m.fall_time_s, "s", 2));
+  if (!m.yaw_rate_mean) {
+    table.row("motion", "none: it ended before the recording began");
+    return;
+  }
+  table.row("turns", fixed(m.turns_done, "", 3));
+  table.row("yaw rate", fixed(m.yaw_rate_mean, "rad/s", 4) + ", error " +
                             shown(m.yaw_rate_error, "%", 2, 100.0));
   if (com.distance_to_point_mean_mm) {
     table.row("distance to point", "mean " + shown(com.distance_to_point_mean_mm, "mm") +

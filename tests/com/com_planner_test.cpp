@@ -126,7 +126,7 @@ TEST(OnDiagonalTarget, IsAbsentForAlmostParallelOrUncrossedDiagonals) {
 class Trot {
  public:
   Trot(double period, double duty, double scatter, unsigned seed = 3)
-      : period_(period), duty_(duty), generator_(seed), noise_(0.0, scatter) {}
+      : period_(period), duty_(duty), generator_(seed), scatter_(scatter) {}
 
   double spin_rate = 0.0;  ///< rad/s about the origin
   double late = 0.0;       ///< s that FR touches down after the schedule; negative: early
@@ -170,8 +170,8 @@ class Trot {
       const bool first_pair = leg == Leg::kFR || leg == Leg::kRL;
       const double mid_stance = period_ * (stride - (first_pair ? 0.0 : 0.5) + 0.5 * duty_);
       const Vec2 nominal(fore_sign(leg) * 0.19, side_sign(leg) * 0.111);
-      entry->second =
-          rot2(spin_rate * mid_stance) * nominal + Vec2(noise_(generator_), noise_(generator_));
+      entry->second = rot2(spin_rate * mid_stance) * nominal +
+                      scatter_ * Vec2(noise_(generator_), noise_(generator_));
     }
     return entry->second;
   }
@@ -179,6 +179,7 @@ class Trot {
   double period_, duty_;
   std::mt19937 generator_;
   std::normal_distribution<double> noise_;
+  double scatter_;
   std::map<std::pair<std::size_t, int>, Vec2> footholds_;
 };
 
@@ -187,6 +188,8 @@ constexpr double kDt = 0.00025;
 ComConfig unlimited() {
   ComConfig config;
   config.max_speed = 1e3;
+  config.gain = 1.0;
+  config.swing_weight_min = 0.0;
   return config;
 }
 

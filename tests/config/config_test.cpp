@@ -310,6 +310,15 @@ TEST_F(ConfigFiles, AMissingFileIsAnError) {
   EXPECT_FALSE(load_config({.file = folder_}));
 }
 
+TEST_F(ConfigFiles, AMissingDataFolderIsNamed) {
+  setenv("PIROUETTE_DATA_DIR", "/nowhere", 1);
+  const Result<Config> config = load_config();
+  ASSERT_FALSE(config);
+  EXPECT_EQ(config.errors()[0].to_string(),
+            "/nowhere: no folder config/ here; set PIROUETTE_DATA_DIR to where config/ and robots/ "
+            "are");
+}
+
 TEST_F(ConfigFiles, MalformedOverridesShowTheForm) {
   for (const char* text :
        {"", "=", "gait.period", "gait.period=", "=0.5", "gait..period=0.5", "gait period=0.5",

@@ -19,6 +19,7 @@ PathConfig anchored(PathTracker tracker = PathTracker::kLqr) {
   PathConfig config;
   config.reference = PathReferenceMode::kAnchored;
   config.tracker = tracker;
+  config.max_yaw_lead = 0.5;
   return config;
 }
 

@@ -18,6 +18,10 @@ PathConfig anchored(PathTracker tracker) {
   PathConfig config;
   config.reference = PathReferenceMode::kAnchored;
   config.tracker = tracker;
+  config.state_weight = {1.0, 1.0, 4.0};  // gains of about 1 /s on position and 2 /s on yaw
+  config.input_weight = {1.0, 1.0, 1.0};
+  config.integral_gain = 1.0;
+  config.integral_limit = 0.08;
   return config;
 }
 

@@ -302,6 +302,10 @@ std::vector<Layer> parse_own_layers(const Choice& robot, const Choice& controlle
 }  // namespace
 
 Result<Config> load_config(const ConfigSources& sources) {
+  if (!fs::is_directory(data_dir() / "config")) {
+    return Error{data_dir().string(), 0, "",
+                 "no folder config/ here; set PIROUETTE_DATA_DIR to where config/ and robots/ are"};
+  }
   Errors errors;
   std::vector<Layer> user_layers;
   const auto add = [&](std::optional<Layer> layer) {

@@ -28,7 +28,8 @@ std::vector<std::string> names_in(const fs::path& folder, NameOf&& name_of) {
 }  // namespace
 
 fs::path data_dir() {
-  if (const char* folder = std::getenv("PIROUETTE_DATA_DIR")) return folder;
+  const char* folder = std::getenv("PIROUETTE_DATA_DIR");
+  if (folder != nullptr && *folder != '\0') return folder;
 #ifdef PIROUETTE_SOURCE_DATA_DIR
   if (fs::exists(fs::path(PIROUETTE_SOURCE_DATA_DIR) / "config")) return PIROUETTE_SOURCE_DATA_DIR;
 #endif

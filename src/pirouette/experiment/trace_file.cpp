@@ -133,7 +133,7 @@ std::string trace_markdown() {
   TraceRow::columns({tick, truth}, [&](const char* name, const char* unit, const char* meaning,
                                        const auto& value) {
     const ColumnType type = column_type(value);
-    out.append("| `").append(name).append("` | `").append(type.dtype).append("`");
+    out.append("| `").append(name).append("` | ").append(type.dtype + 1);  // without the byte order
     if (!type.shape.empty()) out.append(" ").append(type.shape_text());
     out.append(" | ").append(unit).append(" | ").append(meaning).append(" |\n");
   });
