@@ -45,6 +45,8 @@ void ConfigOptions::add_common(CLI::App& command) {
       ->type_name("NAME|FILE.xml");
   command.add_option("--controller", controller_, "mit, fkm, asc or pirouette [pirouette]")
       ->type_name("NAME");
+  command.add_option("--profile", profile_, "Plant: nominal or realistic [nominal]")
+      ->type_name("NAME");
 }
 
 void ConfigOptions::add_run(CLI::App& command) {
@@ -101,7 +103,7 @@ std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
 }
 
 Result<Config> ConfigOptions::load_with(const std::vector<std::string>& overrides) const {
-  ConfigSources sources{robot_, controller_, std::nullopt, overrides};
+  ConfigSources sources{robot_, controller_, profile_, std::nullopt, overrides};
   if (file_) sources.file = *file_;
   Result<Config> config = load_config(sources);
   if (config) return config;
@@ -110,7 +112,7 @@ Result<Config> ConfigOptions::load_with(const std::vector<std::string>& override
 
 Errors ConfigOptions::in_typed_words(Errors errors) const {
   for (Error& error : errors) {
-    if (error.file == "--robot" || error.file == "--controller") error.key.clear();
+    if (error.file == "--robot" || error.file == "--controller" || error.file == "--profile") error.key.clear();
     if (!error.file.empty() && error.file != "--set") continue;
     for (const Shortcut& s : shortcuts_) {
       if (s.text && s.key == error.key) error = {s.option, 0, "", error.message};

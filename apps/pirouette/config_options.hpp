@@ -15,7 +15,7 @@ namespace pirouette::app {
 /// Options bound to a subcommand; must outlive the parsing.
 class ConfigOptions {
  public:
-  /// --config, --set, --robot and --controller.
+  /// --config, --set, --robot, --controller and --profile.
   void add_common(CLI::App& command);
   /// Short names of what a run changes most often: --rate, --terrain, --seed ...
   void add_run(CLI::App& command);
@@ -41,7 +41,7 @@ class ConfigOptions {
   std::vector<std::string> overrides(Errors& errors) const;
   Result<Config> load_with(const std::vector<std::string>& overrides) const;
 
-  std::optional<std::string> robot_, controller_, file_, sensors_;
+  std::optional<std::string> robot_, controller_, profile_, file_, sensors_;
   std::optional<double> radius_;
   std::vector<std::string> sets_;
   std::list<Shortcut> shortcuts_;  // CLI11 keeps references to the elements

@@ -74,6 +74,8 @@ class ConfigFiles : public ::testing::Test {
     write(data / "config" / "robots" / "bee.toml", bee_overlay);
     write(data / "config" / "controllers" / "mit.toml", "[gait]\nduty = 0.5\n");
     write(data / "config" / "controllers" / "pirouette.toml", "[gait]\nduty = 0.6\n");
+    write(data / "config" / "plants" / "nominal.toml", "");
+    write(data / "config" / "plants" / "rough.toml", "[plant]\nfriction = 0.4\nimpratio = 5\n");
     setenv("PIROUETTE_DATA_DIR", data.c_str(), 1);
   }
 
@@ -166,6 +168,18 @@ TEST_F(ConfigFiles, RobotAndControllerComeFromTheHighestLayerThatNamesThem) {
   EXPECT_EQ(flagged.robot, "bee");
   EXPECT_EQ(flagged.controller, "mit");
   EXPECT_EQ(flagged.gait.duty, 0.5);
+}
+
+TEST_F(ConfigFiles, AProfileLiesBetweenTheControllerAndTheUsersFile) {
+  use_own_data_folder("[plant]\nfriction = 0.6\ntimestep = 5e-4\n");
+  const Result<Config> config = load("robot = 'bee'\nprofile = 'rough'\n[plant]\nimpratio = 20\n");
+  ASSERT_TRUE(config) << text_of(config.errors());
+  EXPECT_EQ(config.value().profile, "rough");
+  EXPECT_EQ(config.value().plant.timestep, 5e-4);
+  EXPECT_EQ(config.value().plant.friction, 0.4);
+  EXPECT_EQ(config.value().plant.impratio, 20.0);
+  EXPECT_EQ(error_of("profile = 'ruff'\n"),
+            "my.toml:1: profile: given \"ruff\"; allowed: nominal, rough; did you mean rough?");
 }
 
 TEST_F(ConfigFiles, AnOverlayMayNotChooseTheRobot) {

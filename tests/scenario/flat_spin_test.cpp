@@ -8,7 +8,7 @@
 namespace pirouette {
 namespace {
 
-using test::run;
+using test::spin;
 
 std::string set(const std::string& key, double value) { return key + "=" + std::to_string(value); }
 
@@ -16,7 +16,7 @@ class SpinOnTheFlat : public testing::TestWithParam<std::tuple<double, int>> {};
 
 TEST_P(SpinOnTheFlat, EightTurnsStayOnThePointAtTheCommandedRate) {
   const auto [rate, seed] = GetParam();
-  const Metrics m = run({set("run.rate", rate), "run.seed=" + std::to_string(seed)});
+  const Metrics m = spin({set("run.rate", rate), "run.seed=" + std::to_string(seed)});
   EXPECT_FALSE(m.fell);
   EXPECT_GE(m.turns_done, 7.9);
   // The product's promise is 1 % and 15 mm. These bounds are about twice what was measured over all rates and
@@ -26,8 +26,8 @@ TEST_P(SpinOnTheFlat, EightTurnsStayOnThePointAtTheCommandedRate) {
   EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 4.0);
 }
 
-std::string spin_name(const testing::TestParamInfo<std::tuple<double, int>>& info) {
-  const auto [rate, seed] = info.param;
+std::string spin_name(const testing::TestParamInfo<std::tuple<double, int>>& test_info) {
+  const auto [rate, seed] = test_info.param;
   return std::string(rate > 0.0 ? "Left" : "Right") + std::to_string(std::lround(std::abs(rate) * 10.0)) +
          "DeciradSeed" + std::to_string(seed);
 }
@@ -38,7 +38,7 @@ INSTANTIATE_TEST_SUITE_P(Rates, SpinOnTheFlat,
                          spin_name);
 
 TEST(SpinWithTrueState, StaysWithinHalfAMillimetreOfThePoint) {
-  const Metrics m = run({"estimation.source=truth"});
+  const Metrics m = spin({"estimation.source=truth"});
   EXPECT_FALSE(m.fell);
   EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 0.5);
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-3);
@@ -47,7 +47,7 @@ TEST(SpinWithTrueState, StaysWithinHalfAMillimetreOfThePoint) {
 TEST(SpinFromAnOffsetStart, ReachesPointAndRateFromTenCentimetresAndThirtyDegrees) {
   for (const std::string start : {"[0.1, 0.0]", "[-0.06, 0.08]", "[0.0, -0.1]"}) {
     for (const char* yaw : {"30", "-30"}) {
-      const Metrics m = run({"run.start_offset=" + start, std::string("run.start_yaw_deg=") + yaw, "run.turns=3"});
+      const Metrics m = spin({"run.start_offset=" + start, std::string("run.start_yaw_deg=") + yaw, "run.turns=3"});
       EXPECT_FALSE(m.fell) << start << " " << yaw;
       EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2) << start << " " << yaw;
       EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 15.0) << start << " " << yaw;
@@ -58,27 +58,27 @@ TEST(SpinFromAnOffsetStart, ReachesPointAndRateFromTenCentimetresAndThirtyDegree
 TEST(SpinWithTheFootAsAPoint, TheBaselineBundleSpinsToo) {
   ConfigSources sources;
   sources.controller = "mit";
-  const Metrics m = run(load_config(sources).value());
+  const Metrics m = test::run(load_config(sources).value());
   EXPECT_FALSE(m.fell);
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2);
 }
 
 TEST(SpinWithoutContactSensing, TheScheduleStandsInForTheFlags) {
-  const Metrics m = run({"plant.sensors.contact_flags=false", "run.turns=4"});
+  const Metrics m = spin({"plant.sensors.contact_flags=false", "run.turns=4"});
   EXPECT_FALSE(m.fell);
   EXPECT_LE(m.com.radius_mean_mm.value_or(1e9), 15.0);
 }
 
 TEST(SpinAtOtherTimings, AnyPeriodAndDutyOfTheTrotHolds) {
   for (const auto& [period, duty] : {std::pair{"0.3", "0.6"}, {"0.4", "0.5"}, {"0.5", "0.75"}, {"0.7", "0.6"}}) {
-    const Metrics m = run({std::string("gait.period=") + period, std::string("gait.duty=") + duty, "run.turns=2"});
+    const Metrics m = spin({std::string("gait.period=") + period, std::string("gait.duty=") + duty, "run.turns=2"});
     EXPECT_FALSE(m.fell) << period << " " << duty;
     EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2) << period << " " << duty;
   }
 }
 
 TEST(TrotOnTheSpot, ZeroCommandDoesNotDrift) {
-  const Metrics m = run({"run.rate=0", "run.turns=3"});
+  const Metrics m = spin({"run.rate=0", "run.turns=3"});
   EXPECT_FALSE(m.fell);
   EXPECT_LE(m.com.distance_to_point_max_mm.value_or(1e9), 10.0);
   EXPECT_FALSE(m.yaw_rate_error.has_value());

@@ -32,6 +32,8 @@ inline Metrics run(const Config& config) {
   return result.value().metrics;
 }
 
-inline Metrics run(const std::vector<std::string>& overrides) { return run(spin_config(overrides)); }
+inline Metrics spin(const std::vector<std::string>& overrides) {
+  return run(spin_config(overrides));
+}
 
 }  // namespace pirouette::test

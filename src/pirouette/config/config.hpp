@@ -367,7 +367,7 @@ struct SafetyConfig {
     v(s.min_height_share, "min_height_share", "1", Range{0.0, 1.0},
       "The robot counts as fallen when the CoM is lower than this share of body.height.");
     v(s.max_bad_readings, "max_bad_readings", "ticks", Range{0, 10000},
-      "Non-finite sensor values are bridged by the last good reading for this many ticks, then the "
+      "Non-finite sensor values or commands are bridged by the last good ones for this many ticks, then the "
       "controller stands down.");
     v(s.max_solver_failures, "max_solver_failures", "1", Range{0, 10000},
       "The last good forces are held over this many failed solutions in a row, then the controller "
@@ -423,6 +423,10 @@ struct PlantConfig {
   double impratio = 10.0;
   double command_latency = 0.0;
   double torque_scale = 1.0;
+  double torque_scale_spread = 0.0;
+  double joint_friction_scale = 1.0;
+  double joint_damping_scale = 1.0;
+  double contact_time_constant = 0.02;
   SensorConfig sensors;
 
   template <class Self, class Visit>
@@ -438,6 +442,14 @@ struct PlantConfig {
     v(s.command_latency, "command_latency", "s", Range{0.0, 0.05},
       "Age of the joint command when it reaches the motors.");
     v(s.torque_scale, "torque_scale", "1", Range{0.1, 2.0}, "Motor torque constant, relative to nominal.");
+    v(s.torque_scale_spread, "torque_scale_spread", "1", Range{0.0, 0.5},
+      "Each motor's torque constant is drawn per seed within this share of torque_scale, uniformly.");
+    v(s.joint_friction_scale, "joint_friction_scale", "1", Range{0.0, 100.0},
+      "Dry friction of the joints, as a multiple of the robot file's.");
+    v(s.joint_damping_scale, "joint_damping_scale", "1", Range{0.0, 100.0},
+      "Damping of the joints, as a multiple of the robot file's.");
+    v(s.contact_time_constant, "contact_time_constant", "s", Range{0.002, 0.5},
+      "Time constant of the feet's contact; the sink depth under a load grows with its square.");
     v(s.sensors, "sensors", "Sensor noise; per control sample.");
   }
 };
@@ -478,6 +490,7 @@ struct RunConfig {
 struct Config {
   std::string robot = "mini_cheetah";
   std::string controller = "pirouette";
+  std::string profile = "nominal";
   ControlConfig control;
   BodyConfig body;
   GaitConfig gait;
@@ -498,6 +511,7 @@ struct Config {
   static void fields(Self& s, Visit&& v) {
     v(s.robot, "robot", "Name of a folder under robots/, or path of an MJCF file.");
     v(s.controller, "controller", "Bundle of switches: mit, fkm, asc or pirouette.");
+    v(s.profile, "profile", "Hardware and world: nominal or realistic.");
     v(s.control, "control", "Controller clock.");
     v(s.body, "body", "Posture.");
     v(s.gait, "gait", "Trot.");

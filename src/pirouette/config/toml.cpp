@@ -1,18 +1,15 @@
 #include "pirouette/config/toml.hpp"
 
-#define TOML_EXCEPTIONS 0
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <sstream>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/suggest.hpp"
+#include "pirouette/config/toml_node.hpp"
 #include "pirouette/config/validate.hpp"
 
 namespace pirouette {
@@ -22,7 +19,7 @@ namespace fs = std::filesystem;
 
 /// Where a value was given.
 struct Origin {
-  std::string file;  ///< or "--set", "--robot", "--controller"
+  std::string file;  ///< or "--set", "--robot", "--controller", "--profile"
   int line = 0;
 };
 
@@ -39,21 +36,6 @@ struct Layer {
 
 Error make_error(const Origin& origin, std::string key, std::string message) {
   return {origin.file, origin.line, std::move(key), std::move(message)};
-}
-
-/// The value as the user may have written it.
-std::string shown(const toml::node& node) {
-  if (node.is_table()) return "a table";
-  if (const auto* text = node.as_string()) return in_quotes(text->get());
-  if (const auto* number = node.as_floating_point()) return toml_literal(number->get());
-  std::ostringstream text;
-  if (const toml::array* list = node.as_array()) {
-    for (const toml::node& element : *list)
-      text << (text.str().empty() ? "" : ", ") << shown(element);
-    return "[" + text.str() + "]";
-  }
-  text << toml::toml_formatter{node};
-  return text.str();
 }
 
 /// Key -> what is allowed there, with the unit, for error texts.
@@ -205,18 +187,9 @@ class LayerReader {
 };
 
 std::optional<Layer> parse_file(const fs::path& path, Errors& errors) {
-  if (!fs::is_regular_file(path)) {
-    errors.push_back({path.string(), 0, "", "no such file"});
-    return std::nullopt;
-  }
-  toml::parse_result result = toml::parse_file(path.string());
-  if (!result) {
-    const toml::parse_error& error = result.error();
-    errors.push_back({path.string(), static_cast<int>(error.source().begin.line), "",
-                      std::string(error.description())});
-    return std::nullopt;
-  }
-  return Layer{path.string(), true, std::move(result).table()};
+  std::optional<toml::table> table = parse_toml_file(path, errors);
+  if (!table) return std::nullopt;
+  return Layer{path.string(), true, *std::move(table)};
 }
 
 std::string trimmed(std::string_view text) {
@@ -246,7 +219,7 @@ std::optional<Layer> parse_override(const std::string& text, Errors& errors) {
   return std::nullopt;
 }
 
-/// The name of a robot or a controller, and where it was given.
+/// The name of a robot, a controller or a profile, and where it was given.
 struct Choice {
   std::string name;
   Origin origin;
@@ -269,33 +242,37 @@ bool is_known(const std::string& name, const std::vector<std::string>& sorted_na
   return std::binary_search(sorted_names.begin(), sorted_names.end(), name);
 }
 
-/// The project's own layers below the user's: the robot's overlay and the controller's bundle.
-std::vector<Layer> parse_own_layers(const Choice& robot, const Choice& controller, Errors& errors) {
+/// The project's own layers below the user's: the robot's overlay, the controller's bundle and the
+/// plant's profile.
+std::vector<Layer> parse_own_layers(const Choice& robot, const Choice& controller,
+                                    const Choice& profile, Errors& errors) {
   std::vector<Layer> layers;
   const auto add = [&](const fs::path& path) {
     std::optional<Layer> layer = parse_file(path, errors);
     if (!layer) return;
-    for (const char* key : {"robot", "controller"}) {
+    for (const char* key : {"robot", "controller", "profile"}) {
       if (const toml::node* node = layer->table.get(key)) {
         errors.push_back(
             make_error(layer->origin(*node), key,
-                       "not allowed here: this file is chosen by robot and controller"));
+                       "not allowed here: this file is chosen by robot, controller and profile"));
         layer->table.erase(key);
       }
     }
     layers.push_back(*std::move(layer));
   };
+  const auto add_chosen = [&](const char* key, const Choice& choice, const char* folder,
+                              const std::vector<std::string>& known) {
+    if (is_known(choice.name, known)) {
+      add(data_dir() / "config" / folder / (choice.name + ".toml"));
+    } else {
+      errors.push_back(make_error(choice.origin, key, unknown_name(choice.name, known)));
+    }
+  };
 
   const fs::path overlay = data_dir() / "config" / "robots" / (robot.name + ".toml");
   if (is_known(robot.name, known_robots()) && fs::exists(overlay)) add(overlay);
-
-  const std::vector<std::string> controllers = known_controllers();
-  if (is_known(controller.name, controllers)) {
-    add(data_dir() / "config" / "controllers" / (controller.name + ".toml"));
-  } else {
-    errors.push_back(
-        make_error(controller.origin, "controller", unknown_name(controller.name, controllers)));
-  }
+  add_chosen("controller", controller, "controllers", known_controllers());
+  add_chosen("profile", profile, "plants", known_profiles());
   return layers;
 }
 
@@ -318,6 +295,7 @@ Result<Config> load_config(const ConfigSources& sources) {
   const Choice robot = choose("robot", sources.robot, user_layers, config.robot);
   const Choice controller =
       choose("controller", sources.controller, user_layers, config.controller);
+  const Choice profile = choose("profile", sources.profile, user_layers, config.profile);
 
   std::map<std::string, Origin> origins;
   const auto read = [&](const std::vector<Layer>& layers) {
@@ -328,10 +306,11 @@ Result<Config> load_config(const ConfigSources& sources) {
                        [](const Error& a, const Error& b) { return a.line < b.line; });
     }
   };
-  read(parse_own_layers(robot, controller, errors));
+  read(parse_own_layers(robot, controller, profile, errors));
   read(user_layers);
   config.robot = robot.name;
   config.controller = controller.name;
+  config.profile = profile.name;
   origins["robot"] = robot.origin;
 
   for (const Error& error : validate(config)) {

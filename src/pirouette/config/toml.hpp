@@ -14,12 +14,13 @@ namespace pirouette {
 
 /// What the user chose. Layers from the lowest to the highest, each overriding those before it:
 /// the defaults in config.hpp; config/robots/<robot>.toml, where it exists;
-/// config/controllers/<controller>.toml; `file`; `overrides` in their order.
-/// `robot` and `controller` themselves come from the highest of: the fields here, `overrides`,
-/// `file`.
+/// config/controllers/<controller>.toml; config/plants/<profile>.toml; `file`; `overrides` in their
+/// order. `robot`, `controller` and `profile` themselves come from the highest of: the fields here,
+/// `overrides`, `file`.
 struct ConfigSources {
   std::optional<std::string> robot = {};           ///< --robot
   std::optional<std::string> controller = {};      ///< --controller
+  std::optional<std::string> profile = {};         ///< --profile
   std::optional<std::filesystem::path> file = {};  ///< --config
   /// --set key=value, such as "gait.period=0.3". The value is TOML; what is not TOML is a string,
   /// so "foot.model=rolling" needs no quotes.

@@ -49,11 +49,16 @@ std::vector<std::string> known_robots() {
 }
 
 std::vector<std::string> known_controllers() {
-  return names_in(data_dir() / "config" / "controllers",
-                  [](const fs::path& file) -> std::optional<std::string> {
-                    if (file.extension() != ".toml") return std::nullopt;
-                    return file.stem().string();
-                  });
+  return toml_stems(data_dir() / "config" / "controllers");
+}
+
+std::vector<std::string> known_profiles() { return toml_stems(data_dir() / "config" / "plants"); }
+
+std::vector<std::string> toml_stems(const fs::path& folder) {
+  return names_in(folder, [](const fs::path& file) -> std::optional<std::string> {
+    if (file.extension() != ".toml") return std::nullopt;
+    return file.stem().string();
+  });
 }
 
 Result<std::string> resolve_robot(const Config& config) {

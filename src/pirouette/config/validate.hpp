@@ -22,8 +22,12 @@ Result<std::string> resolve_robot(const Config& config);
 /// the installed share/pirouette.
 std::filesystem::path data_dir();
 
-/// Names under robots/ and config/controllers/ of the data folder, sorted.
+/// Names under robots/, config/controllers/ and config/plants/ of the data folder, sorted.
 std::vector<std::string> known_robots();
 std::vector<std::string> known_controllers();
+std::vector<std::string> known_profiles();
+
+/// Names of the TOML files in `folder` without their extension, sorted.
+std::vector<std::string> toml_stems(const std::filesystem::path& folder);
 
 }  // namespace pirouette

@@ -39,6 +39,11 @@ bool is_finite(const SensorReading& s) {
   return ok;
 }
 
+bool is_finite(const MotionCommand& c) {
+  return c.v_H.allFinite() && std::isfinite(c.yaw_rate) && (!c.point || c.point->allFinite()) &&
+         (!c.heading || std::isfinite(*c.heading));
+}
+
 /// Joint angles with every foot below its hip, CoM (taken at the trunk origin) at the working height.
 PerLeg<Vec3> nominal_posture(const PerLeg<LegGeometry>& legs, double com_height) {
   PerLeg<Vec3> q;
@@ -87,7 +92,7 @@ struct SpinController::Impl {
   }
 
   void reset(const BasePose& pose);
-  bool accept(const SensorReading& sensors);
+  bool accept(const SensorReading& sensors, const MotionCommand& command);
   void start_from_first_reading();
   double measured_period(const SensorReading& sensors) const;
 
@@ -131,8 +136,10 @@ struct SpinController::Impl {
   bool started = false;
   YawUnwrapper yaw;
   SensorReading last_good;
+  MotionCommand last_good_command;
   int bad_readings = 0;
-  int solver_failures = 0;
+  int mpc_failures = 0;  ///< solutions in a row
+  int wbc_failures = 0;
   int ticks_until_mpc = 0;
   PerLeg<bool> solved_contacts{};  ///< contact set of the last MPC solution
   PerLeg<bool> landed_early{};
@@ -148,7 +155,7 @@ void SpinController::Impl::reset(const BasePose& pose) {
   started = false;
   trace = TickTrace{};
   timing = TickTiming{};
-  bad_readings = solver_failures = ticks_until_mpc = 0;
+  bad_readings = mpc_failures = wbc_failures = ticks_until_mpc = 0;
   landed_early = {};
   last_forces = ContactForces{};
   attitude_filter.reset(pose.R_WB);
@@ -159,14 +166,16 @@ void SpinController::Impl::reset(const BasePose& pose) {
   yaw.reset(rpy_from_rotation(pose.R_WB).yaw);
 }
 
-/// Bridges single bad readings by the last good one; false when there have been too many.
-bool SpinController::Impl::accept(const SensorReading& sensors) {
-  if (is_finite(sensors)) {
+/// Bridges single bad inputs by the last good ones, one nominal period on; false when there have been too many.
+bool SpinController::Impl::accept(const SensorReading& sensors, const MotionCommand& command) {
+  if (is_finite(sensors) && is_finite(command)) {
     last_good = sensors;
+    last_good_command = command;
     bad_readings = 0;
     return true;
   }
   ++bad_readings;
+  last_good.time += 1.0 / config.control.rate;
   return started && bad_readings <= config.safety.max_bad_readings;
 }
 
@@ -407,10 +416,10 @@ void SpinController::Impl::solve_mpc() {
   const ContactForces forces = mpc.update(mpc_input());
   timing.mpc_us = microseconds_since(begin);
   if (forces.status == SolveStatus::kFailed) {
-    ++solver_failures;
+    ++mpc_failures;
     last_forces.status = SolveStatus::kHeld;
   } else {
-    solver_failures = 0;
+    mpc_failures = 0;
     last_forces = forces;
   }
   trace.mpc = last_forces;
@@ -432,10 +441,11 @@ void SpinController::Impl::solve_whole_body(double dt) {
   trace.wbc = out.forces;
   if (out.forces.status == SolveStatus::kFailed) {
     // The previous command stands for this tick.
-    ++solver_failures;
+    ++wbc_failures;
     trace.wbc.status = SolveStatus::kHeld;
     return;
   }
+  wbc_failures = 0;
   JointCommand raw;
   for (const Leg leg : kLegs) {
     const bool stance = trace.contacts[leg].in_contact;
@@ -481,7 +491,7 @@ const JointCommand& SpinController::tick(const SensorReading& sensors, const Mot
   Impl& s = *impl_;
   TickTrace& t = s.trace;
   if (is_stood_down(t.status)) return t.command;
-  if (!s.accept(sensors)) {
+  if (!s.accept(sensors, command)) {
     s.stand_down(ControllerStatus::kBadInput);
     return t.command;
   }
@@ -490,15 +500,17 @@ const JointCommand& SpinController::tick(const SensorReading& sensors, const Mot
   t.sensors = s.last_good;
 
   s.estimate(t.sensors, dt);
-  t.gait = s.clock.update(command.walk, dt);
+  t.gait = s.clock.update(s.last_good_command.walk, dt);
   t.status = t.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
   s.find_contacts(t.sensors);
-  s.plan_body(command, dt);
+  s.plan_body(s.last_good_command, dt);
   s.plan_feet(dt);
   s.solve_mpc();
   s.solve_whole_body(dt);
 
-  if (s.solver_failures > s.config.safety.max_solver_failures) s.stand_down(ControllerStatus::kSolverFailed);
+  if (std::max(s.mpc_failures, s.wbc_failures) > s.config.safety.max_solver_failures) {
+    s.stand_down(ControllerStatus::kSolverFailed);
+  }
   if (s.has_fallen()) s.stand_down(ControllerStatus::kFallen);
   return t.command;
 }

@@ -25,6 +25,14 @@ std::vector<double> component(std::span<const Vec2> points, int axis) {
   return out;
 }
 
+/// Radius of a steady turn at the speed `bias`; absent without a turn.
+Number bias_circle(double bias, const MotionRecord& record) {
+  const double angle = record.yaw.back() - record.yaw.front();
+  const double duration = record.time.back() - record.time.front();
+  if (angle == 0.0) return std::nullopt;
+  return bias * duration / std::abs(angle);
+}
+
 ComMetrics evaluate_com(const MotionRecord& record, const CommandedMotion& commanded) {
   const std::vector<Vec2> path = resample(record.time, record.p_WG, kComRate);
   ComMetrics com;
@@ -52,7 +60,11 @@ ComMetrics evaluate_com(const MotionRecord& record, const CommandedMotion& comma
     com.body_bias_mm_s = bias->norm() * kMillimetres;
     com.body_bias_x_mm_s = bias->x() * kMillimetres;
     com.body_bias_y_mm_s = bias->y() * kMillimetres;
+    com.bias_circle_mm = bias_circle(*com.body_bias_mm_s, record);
   }
+  const std::vector<Vec2> velocity = resample(record.time, record.v_WG_W, kComRate);
+  com.velocity_range_x_mm_s = scaled(peak_to_peak(component(velocity, 0), window), kMillimetres);
+  com.velocity_range_y_mm_s = scaled(peak_to_peak(component(velocity, 1), window), kMillimetres);
   return com;
 }
 
@@ -138,8 +150,13 @@ Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, d
     if (commanded.yaw_rate != 0.0) m.yaw_rate_error = *m.yaw_rate_mean / commanded.yaw_rate - 1.0;
   }
   m.com = evaluate_com(record, commanded);
-  m.attitude = {mean(record.roll), variance(record.roll), mean(record.pitch),
-                variance(record.pitch)};
+  const auto window = static_cast<std::size_t>(kRecordLength * rate);
+  m.attitude = {mean(record.roll),
+                variance(record.roll),
+                mean(record.pitch),
+                variance(record.pitch),
+                peak_to_peak(record.roll, window),
+                peak_to_peak(record.pitch, window)};
   m.acceleration = evaluate_acceleration(record, rate);
   m.estimator = {scaled(mean(record.position_error), kMillimetres), mean(record.yaw_error)};
   return m;

@@ -52,10 +52,13 @@ struct ComMetrics {
   Number peak_to_peak_x_mm, peak_to_peak_y_mm;
   Number drift_per_turn_mm;
   Number body_bias_mm_s, body_bias_x_mm_s, body_bias_y_mm_s;
+  Number bias_circle_mm;
+  Number velocity_range_x_mm_s, velocity_range_y_mm_s;
 };
 
 struct AttitudeMetrics {
   Number roll_mean, roll_variance, pitch_mean, pitch_variance;
+  Number roll_range, pitch_range;
 };
 
 struct AccelerationMetrics {
@@ -75,7 +78,7 @@ struct TimingMetrics {
 
 /// What the numbers hold for.
 struct RunContext {
-  std::string robot, terrain, controller, estimator, reference, tracker, foot_model, com_planner;
+  std::string robot, terrain, controller, profile, estimator, reference, tracker, foot_model, com_planner;
   double duty = 0.0;
   double period = 0.0;
   double torsional_friction = 0.0;
@@ -166,12 +169,19 @@ void Metrics::fields(Self& m, Visit&& v) {
     "mean CoM velocity in heading axes less the command; draws a circle of radius bias / yaw rate");
   v(com.body_bias_x_mm_s, "com.body_bias_x_mm_s", "mm/s", "forwards");
   v(com.body_bias_y_mm_s, "com.body_bias_y_mm_s", "mm/s", "to the left");
+  v(com.bias_circle_mm, "com.bias_circle_mm", "mm",
+    "radius of the circle that this bias draws at the yaw rate achieved");
+  v(com.velocity_range_x_mm_s, "com.velocity_range_x_mm_s", "mm/s",
+    "range of the CoM's velocity along world x in 10 s, mean over the record");
+  v(com.velocity_range_y_mm_s, "com.velocity_range_y_mm_s", "mm/s", "the same along y");
 
   auto& attitude = m.attitude;
   v(attitude.roll_mean, "attitude.roll_mean", "rad", "of the trunk, true");
   v(attitude.roll_variance, "attitude.roll_variance", "rad^2", "unbiased");
   v(attitude.pitch_mean, "attitude.pitch_mean", "rad", "nose up is negative");
   v(attitude.pitch_variance, "attitude.pitch_variance", "rad^2", "unbiased");
+  v(attitude.roll_range, "attitude.roll_range", "rad", "range in 10 s, mean over the record");
+  v(attitude.pitch_range, "attitude.pitch_range", "rad", "range in 10 s, mean over the record");
 
   auto& acceleration = m.acceleration;
   v(acceleration.x_variance, "acceleration.x_variance", "(m/s^2)^2",
@@ -199,6 +209,7 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(context.robot, "context.robot", "", "name, or path of the MJCF file");
   v(context.terrain, "context.terrain", "", "plant.terrain");
   v(context.controller, "context.controller", "", "bundle of switches");
+  v(context.profile, "context.profile", "", "of the plant: nominal or realistic");
   v(context.estimator, "context.estimator", "", "estimation.source");
   v(context.reference, "context.reference", "", "path.reference");
   v(context.tracker, "context.tracker", "", "path.tracker");

@@ -83,6 +83,7 @@ RunContext describe_run(const Config& config, const CommandedMotion& commanded) 
   c.robot = config.robot;
   c.terrain = config.plant.terrain;
   c.controller = config.controller;
+  c.profile = config.profile;
   c.estimator = enum_name(config.estimation.source);
   c.reference = enum_name(config.path.reference);
   c.tracker = enum_name(config.path.tracker);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "pirouette/plant/random.hpp"
 #include "pirouette/plant/scene.hpp"
 #include "pirouette/plant/sensors.hpp"
 #include "pirouette/plant/spawn.hpp"
@@ -96,6 +97,19 @@ PlantTruth lost_truth(double time) {
   return truth;
 }
 
+/// Each motor's torque constant over the nominal one, of this seed.
+PerLeg<Vec3> draw_torque_scales(const Config& config) {
+  RandomStream random(static_cast<std::uint64_t>(config.run.seed), RandomPurpose::kTorqueConstants);
+  PerLeg<Vec3> scales;
+  for (const Leg leg : kLegs) {
+    for (double& scale : scales[leg]) {
+      const double deviation = config.plant.torque_scale_spread * (2.0 * random.uniform() - 1.0);
+      scale = config.plant.torque_scale * (1.0 + deviation);
+    }
+  }
+  return scales;
+}
+
 /// `duration` in whole periods, or nothing if it is not a whole number of them.
 std::optional<std::size_t> whole_periods(double duration, double period) {
   const double ratio = duration / period;
@@ -118,7 +132,7 @@ struct Plant::Impl {
         sensors(config.plant.sensors, static_cast<std::uint64_t>(config.run.seed)),
         command_delay(delay),
         steps_per_tick(steps),
-        torque_scale(config.plant.torque_scale),
+        torque_scale(draw_torque_scales(config)),
         shows_truth(config.estimation.source == EstimatorSource::kTruth) {}
 
   /// Motor torques of `command` at the present joint state, into `truth` and the simulation.
@@ -136,7 +150,7 @@ struct Plant::Impl {
   Sensors sensors;
   CommandDelay command_delay;
   std::size_t steps_per_tick;
-  double torque_scale;
+  PerLeg<Vec3> torque_scale;  ///< true over nominal torque constant: abad, hip, knee
   bool shows_truth;  ///< the controller was configured to use it
 
   JointCommand command_in_force;
@@ -156,8 +170,9 @@ void Plant::Impl::drive_motors(const JointCommand& command) {
       q[i] = data->qpos[at_leg.qpos[static_cast<std::size_t>(i)]];
       dq[i] = data->qvel[at_leg.dof[static_cast<std::size_t>(i)]];
     }
-    const Vec3 demand = torque_scale * (wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) +
-                                        wanted.kd.cwiseProduct(wanted.dq - dq));
+    const Vec3 demand =
+        torque_scale[leg].cwiseProduct(wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) +
+                                       wanted.kd.cwiseProduct(wanted.dq - dq));
     diverged = diverged || !demand.allFinite();
     if (diverged) return;
     const Vec3 torque = demand.cwiseMax(-at_leg.tau_max).cwiseMin(at_leg.tau_max);

@@ -12,7 +12,12 @@ namespace pirouette {
 
 /// What a stream is for. Streams of one seed are independent, so drawing from one never shifts
 /// another.
-enum class RandomPurpose : std::uint32_t { kTerrain = 1, kSensorBias = 2, kSensorNoise = 3 };
+enum class RandomPurpose : std::uint32_t {
+  kTerrain = 1,
+  kSensorBias = 2,
+  kSensorNoise = 3,
+  kTorqueConstants = 4
+};
 
 class RandomStream {
  public:

@@ -7,6 +7,7 @@ namespace pirouette {
 namespace {
 
 constexpr int kFootContactDimensions = 6;  ///< normal, two sliding, torsion, two rolling
+constexpr double kContactDampingRatio = 1.0;
 
 void remove_world_geoms(mjSpec& spec) {
   const mjsBody* world = mjs_findBody(&spec, "world");
@@ -56,6 +57,12 @@ Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
     Eigen::Map<Vec3>(model.geom_friction + 3 * leg.foot_geom) = friction;
     model.geom_condim[leg.foot_geom] = kFootContactDimensions;
     model.geom_priority[leg.foot_geom] = foot_priority;
+    Eigen::Map<Vec2>(model.geom_solref + mjNREF * leg.foot_geom) =
+        Vec2(config.contact_time_constant, kContactDampingRatio);
+    for (const int dof : leg.dof) {
+      model.dof_frictionloss[dof] *= config.joint_friction_scale;
+      model.dof_damping[dof] *= config.joint_damping_scale;
+    }
   }
   return scene;
 }

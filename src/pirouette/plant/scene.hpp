@@ -29,8 +29,9 @@ struct Scene {
 
 /// Puts the robot of `mjcf` on `terrain`. The world is pirouette's alone: geoms that the file fixes
 /// to the world (a floor of its own), its physics options and its actuators do not count. The feet
-/// take the configured friction with a priority above every other geom's, so that MuJoCo uses
-/// exactly these values wherever a foot touches.
+/// take the configured friction and softness with a priority above every other geom's, so that
+/// MuJoCo uses exactly these values wherever a foot touches. Friction and damping of the joints are
+/// the file's, times the configured factors.
 Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
                           const std::string& mjcf);
 

@@ -10,7 +10,7 @@ enum class SolveStatus : int {
   kUnconstrained = 0,  ///< the unconstrained optimum obeys every constraint
   kConstrained = 1,    ///< the active-set solver converged
   kHeld = 2,           ///< the solver failed; the last good forces are held
-  kFailed = 3,         ///< failed too often in a row: the controller stands down
+  kFailed = 3,         ///< the solver's own word; the controller turns it into kHeld or stands down
 };
 
 struct ContactForces {

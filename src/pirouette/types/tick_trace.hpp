@@ -100,9 +100,9 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit("swing_position", "m", "swing target p_WF", per_leg(t.swing, [](auto& s) { return s.p_WF; }));
   visit("force_mpc", "N", "planned ground reactions", t.mpc.f_W);
   visit("force_wbc", "N", "refined ground reactions", t.wbc.f_W);
-  visit("mpc_status", "1", "0 unconstrained, 1 constrained, 2 held, 3 failed", static_cast<int>(t.mpc.status));
+  visit("mpc_status", "1", "0 unconstrained, 1 constrained, 2 failed: the last good one held", static_cast<int>(t.mpc.status));
   visit("mpc_iterations", "1", "of the active-set solver", t.mpc.iterations);
-  visit("wbc_status", "1", "0 unconstrained, 1 constrained, 2 held, 3 failed", static_cast<int>(t.wbc.status));
+  visit("wbc_status", "1", "0 unconstrained, 1 constrained, 2 failed: the last good one held", static_cast<int>(t.wbc.status));
   visit("command_position", "rad", "", per_leg(t.command, [](auto& c) { return c.q; }));
   visit("command_velocity", "rad/s", "", per_leg(t.command, [](auto& c) { return c.dq; }));
   visit("command_torque", "N m", "feed-forward", per_leg(t.command, [](auto& c) { return c.tau; }));
