@@ -46,6 +46,10 @@ build: configure  ## the program, build/release/pirouette
 spin: build  ## one spin in simulation; ARGS='--rate 0.7 --terrain slope:10'
 	@$(PIROUETTE) spin $(ARGS)
 
+.PHONY: reproduce
+reproduce: build  ## the paper's figures: tables and plots in reports/; what is finished there is kept
+	@$(PIROUETTE) reproduce all --jobs $(JOBS) --out reports $(ARGS)
+
 .PHONY: test
 test: configure  ## every test; wrong formatting and warnings fail it with WERROR=ON only
 	@echo 'check: formatting'
@@ -65,7 +69,7 @@ check-format: setup
 lint: setup .venv/lint.stamp
 	@echo 'check: clang-tidy'
 	@$(CMAKE) --preset tidy --log-level=WARNING > /dev/null
-	@$(CMAKE) --build build/tidy --parallel $(JOBS)
+	@$(CMAKE) --build build/tidy --parallel $(JOBS) -- -k 0
 
 .venv/lint.stamp: requirements-lint.txt | .venv/setup.stamp
 	@echo 'setup: wheels of requirements-lint.txt into .venv'

@@ -20,7 +20,7 @@ install(
   FILES_MATCHING
   PATTERN "*.hpp"
 )
-install(DIRECTORY config robots DESTINATION ${CMAKE_INSTALL_DATADIR}/pirouette)
+install(DIRECTORY config experiments robots DESTINATION ${CMAKE_INSTALL_DATADIR}/pirouette)
 
 configure_package_config_file(
   cmake/pirouetteConfig.cmake.in

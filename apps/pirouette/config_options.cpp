@@ -1,5 +1,6 @@
 #include "config_options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
@@ -65,22 +66,76 @@ void ConfigOptions::add_run(CLI::App& command) {
                "Yaw at which the robot starts; it turns to 0 [0]");
 }
 
-void ConfigOptions::add_radius(CLI::App& command) {
+void ConfigOptions::add_turn(CLI::App& command) {
+  is_turn_ = true;
+  CLI::Option* path =
+      add_shortcut(command, {"--path", "run.path"}, "NAME|FILE.toml",
+                   "Path to follow: a name under experiments/paths/, or a file of waypoints");
+  add_shortcut(command, {"--laps", "run.laps"}, "N", "Laps of a closed path to record [2]");
+  CLI::Option* radius =
+      command
+          .add_option("--radius", radius_,
+                      "Signed radius of a circle, m; the velocity is radius times rate")
+          ->type_name("M");
   command
-      .add_option("--radius", radius_,
-                  "Signed radius, m; the forward velocity is radius times rate")
-      ->type_name("M")
-      ->required();
+      .add_option("--speed", speed_,
+                  "Along the path, or with --rate along a circle, else along a straight line, m/s")
+      ->type_name("M/S")
+      ->excludes(radius);
+  CLI::Option* offset = command
+                            .add_option("--heading-offset-deg", heading_offset_deg_,
+                                        "Direction of travel from the robot's front: 90 is to its "
+                                        "left, 180 backwards [0]")
+                            ->type_name("DEG");
+  for (CLI::Option* other :
+       {radius, offset, command.get_option("--rate"), command.get_option("--turns")}) {
+    path->excludes(other);
+  }
 }
 
-void ConfigOptions::add_shortcut(CLI::App& command, Shortcut shortcut,
-                                 const std::string& placeholder, const std::string& help) {
+CLI::Option* ConfigOptions::add_shortcut(CLI::App& command, Shortcut shortcut,
+                                         const std::string& placeholder,
+                                         const std::string& help) {
   Shortcut& kept = shortcuts_.emplace_back(std::move(shortcut));
-  command.add_option(kept.option, kept.text, help)->type_name(placeholder);
+  return command.add_option(kept.option, kept.text, help)->type_name(placeholder);
+}
+
+bool ConfigOptions::is_given(const std::string& option) const {
+  return std::any_of(shortcuts_.begin(), shortcuts_.end(),
+                     [&](const Shortcut& s) { return s.option == option && s.text; });
+}
+
+std::vector<std::string> ConfigOptions::turn_overrides(const Config& config) const {
+  std::vector<std::string> out;
+  if (!radius_ && !speed_) return out;
+  const bool on_path = !radius_ && !config.run.path.empty();
+  if (on_path) return {"run.path_speed=" + as_toml(*speed_)};
+
+  const double rate = radius_ || is_given("--rate") ? config.run.rate : 0.0;
+  const double speed = radius_ ? *radius_ * rate : *speed_;
+  const double direction = radians(heading_offset_deg_.value_or(0.0));
+  constexpr double kDigits = 1e12;  // a cosine of 90 degrees is to be 0
+  const auto component = [&](double share) {
+    return as_toml(std::round(speed * share * kDigits) / kDigits);
+  };
+  return {"run.path=\"\"", "run.rate=" + as_toml(rate),
+          "run.velocity=[" + component(std::cos(direction)) + ", " +
+              component(std::sin(direction)) + "]"};
 }
 
 std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
   std::vector<std::string> out;
+  if (is_turn_ && !radius_ && !speed_ && !is_given("--path") && !file_) {
+    errors.push_back({"--radius", 0, "", "missing; or give --speed, --path or --config"});
+  }
+  const std::pair<const char*, std::optional<double>> numbers[] = {
+      {"--radius", radius_}, {"--speed", speed_}, {"--heading-offset-deg", heading_offset_deg_}};
+  for (const auto& [option, number] : numbers) {
+    if (number && !std::isfinite(*number)) {
+      errors.push_back(
+          {option, 0, "", "given " + as_toml(*number) + "; allowed: a finite number"});
+    }
+  }
   for (const Shortcut& s : shortcuts_) {
     if (!s.text) continue;
     const auto value = s.is_pair ? pair_as_toml(*s.text) : s.text;
@@ -117,10 +172,12 @@ Errors ConfigOptions::in_typed_words(Errors errors) const {
     for (const Shortcut& s : shortcuts_) {
       if (s.text && s.key == error.key) error = {s.option, 0, "", error.message};
     }
-    if (radius_ && error.key == "run.velocity") {
-      error = {"--radius", 0, "",
-               "given " + as_toml(*radius_) + "; run.velocity: " + error.message};
+    if ((radius_ || speed_) && error.key == "run.velocity") {
+      error = {radius_ ? "--radius" : "--speed", 0, "",
+               "given " + as_toml(radius_.value_or(speed_.value_or(0.0))) + "; run.velocity: " +
+                   error.message};
     }
+    if (speed_ && error.key == "run.path_speed") error = {"--speed", 0, "", error.message};
   }
   return errors;
 }
@@ -129,9 +186,10 @@ Result<Config> ConfigOptions::load() const {
   Errors errors;
   std::vector<std::string> texts = overrides(errors);
   Result<Config> config = load_with(texts);
-  if (config && radius_) {
-    texts.push_back("run.velocity=[" + as_toml(*radius_ * config.value().run.rate) + ", 0]");
-    config = load_with(texts);
+  if (config && errors.empty()) {
+    const std::vector<std::string> turn = turn_overrides(config.value());
+    texts.insert(texts.end(), turn.begin(), turn.end());
+    if (!turn.empty()) config = load_with(texts);
   }
   if (!config) errors.insert(errors.end(), config.errors().begin(), config.errors().end());
   if (!errors.empty()) return errors;

@@ -19,8 +19,9 @@ class ConfigOptions {
   void add_common(CLI::App& command);
   /// Short names of what a run changes most often: --rate, --terrain, --seed ...
   void add_run(CLI::App& command);
-  /// --radius.
-  void add_radius(CLI::App& command);
+  /// What the robot is to walk along: --radius, --speed or --path, with their details. After
+  /// add_run.
+  void add_turn(CLI::App& command);
 
   Result<Config> load() const;
 
@@ -36,13 +37,17 @@ class ConfigOptions {
     std::optional<std::string> text{};
   };
 
-  void add_shortcut(CLI::App& command, Shortcut shortcut, const std::string& placeholder,
-                    const std::string& help);
+  CLI::Option* add_shortcut(CLI::App& command, Shortcut shortcut, const std::string& placeholder,
+                            const std::string& help);
+  bool is_given(const std::string& option) const;
   std::vector<std::string> overrides(Errors& errors) const;
+  /// Overrides that --radius, --speed and --heading-offset-deg mean on top of `config`.
+  std::vector<std::string> turn_overrides(const Config& config) const;
   Result<Config> load_with(const std::vector<std::string>& overrides) const;
 
   std::optional<std::string> robot_, controller_, profile_, file_, sensors_;
-  std::optional<double> radius_;
+  bool is_turn_ = false;
+  std::optional<double> radius_, speed_, heading_offset_deg_;
   std::vector<std::string> sets_;
   std::list<Shortcut> shortcuts_;  // CLI11 keeps references to the elements
 };

@@ -11,7 +11,9 @@
 #include "config_command.hpp"
 #include "exit_code.hpp"
 #include "pirouette/experiment/trial.hpp"
+#include "reproduce_command.hpp"
 #include "run_command.hpp"
+#include "sweep_command.hpp"
 
 namespace pirouette::app {
 
@@ -78,12 +80,14 @@ int run(int argc, char** argv) {
   CLI::App app{"Accurate blind spinning of quadrupeds, simulated on MuJoCo.", "pirouette"};
   app.footer(
       "pirouette VERB --help explains a verb. Other verbs run the program pirouette-VERB.\n"
-      "Exit codes: 0 done, 1 the robot fell, 2 bad usage or configuration.");
+      "Exit codes: 0 done, 1 the robot fell or a bound was missed, 2 bad usage or configuration.");
   app.set_version_flag("--version", std::string("pirouette ") + version() + " (" + commit() + ")");
   app.require_subcommand(0, 1);
   const std::string command_line = shell_line(argc, argv);
   const RunCommand spin(app, RunCommand::Kind::kSpin, command_line);
   const RunCommand turn(app, RunCommand::Kind::kTurn, command_line);
+  const SweepCommand sweep(app);
+  const ReproduceCommand reproduce(app);
   const ConfigCommand config(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_verb(app, argv[1])) {
@@ -99,6 +103,8 @@ int run(int argc, char** argv) {
   }
   if (spin.chosen()) return spin.run();
   if (turn.chosen()) return turn.run();
+  if (sweep.chosen()) return sweep.run();
+  if (reproduce.chosen()) return reproduce.run();
   if (config.chosen()) return config.run();
   std::cout << app.help();
   return kDone;

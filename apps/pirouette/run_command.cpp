@@ -1,13 +1,12 @@
 #include "run_command.hpp"
 
 #include <algorithm>
-#include <atomic>
-#include <csignal>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
 
 #include "exit_code.hpp"
+#include "interrupt.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/experiment/run_folder.hpp"
 #include "pirouette/experiment/trial.hpp"
@@ -16,11 +15,6 @@
 
 namespace pirouette::app {
 namespace {
-
-std::atomic<int> interrupt_signal = 0;
-static_assert(std::atomic<int>::is_always_lock_free, "set by a signal handler");
-
-extern "C" void remember_signal(int signal) { interrupt_signal = signal; }
 
 std::string short_number(double value) {
   char text[32];
@@ -52,14 +46,15 @@ std::string shown_path(const std::filesystem::path& path) {
 }
 
 Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_progress) {
-  const bool about_a_point = config.run.velocity == std::array{0.0, 0.0};
+  const bool about_a_point =
+      config.run.path.empty() && config.run.velocity == std::array{0.0, 0.0};
   std::optional<ProgressBar> bar;
   if (show_progress) bar.emplace(about_a_point);
   TrialOptions options;
   options.trace = &trace;
   options.progress = [&](const TrialProgress& progress) {
     if (bar) bar->update(progress);
-    return interrupt_signal == 0;
+    return interrupt_signal() == 0;
   };
   return run_trial(config, options);
 }
@@ -70,9 +65,9 @@ RunCommand::RunCommand(CLI::App& app, Kind kind, std::string command_line)
     : kind_(kind), command_line_(std::move(command_line)) {
   command_ = kind == Kind::kSpin
                  ? app.add_subcommand("spin", "Simulate a spin on the spot and measure it")
-                 : app.add_subcommand("turn", "Simulate a turn of a given radius and measure it");
-  if (kind == Kind::kTurn) config_options_.add_radius(*command_);
+                 : app.add_subcommand("turn", "Simulate a turn of any radius, or a path, and measure it");
   config_options_.add_run(*command_);
+  if (kind == Kind::kTurn) config_options_.add_turn(*command_);
   config_options_.add_common(*command_);
   command_->add_option("--out", out_, "Run folder; an earlier run there is replaced [runs/...]")
       ->type_name("DIR");
@@ -87,7 +82,9 @@ std::string RunCommand::default_folder(const Config& config) const {
     name += "-" + std::filesystem::path(config.robot).stem().string();
   }
   if (config.controller != standard.controller) name += "-" + config.controller;
-  name += "-" + config.plant.terrain + "-" + short_number(config.run.rate);
+  name += "-" + config.plant.terrain + "-";
+  name += config.run.path.empty() ? short_number(config.run.rate)
+                                  : std::filesystem::path(config.run.path).stem().string();
   name += "-seed" + std::to_string(config.run.seed);
   std::erase(name, ':');
   std::replace(name.begin(), name.end(), '/', '_');
@@ -108,13 +105,12 @@ int RunCommand::run() const {
   Result<TraceFile> trace = TraceFile::create(folder.value().file(kTraceFile));
   if (!trace) return report(trace.errors());
 
-  std::signal(SIGINT, remember_signal);
-  std::signal(SIGTERM, remember_signal);
+  watch_interrupts();
   const Result<TrialResult> trial = simulate(config, trace.value(), !quiet_);
   if (!trial) return report(config_options_.in_typed_words(trial.errors()));
   if (trial.value().interrupted) {
     std::cerr << "interrupted: no run folder was written\n";
-    return kSignal + interrupt_signal;
+    return kSignal + interrupt_signal();
   }
   const Metrics& metrics = trial.value().metrics;
   if (const auto error = save(folder.value(), trace.value(), config, metrics, command_line_)) {

@@ -68,6 +68,9 @@ void add_context(Table& table, const RunContext& c) {
       command += ": radius " + plain(radius) + " m";
     }
   }
+  if (!c.path.empty()) {
+    command = c.path + ", " + plain(std::hypot(c.velocity_x, c.velocity_y)) + " m/s along it";
+  }
   table.row("command", command);
   table.row("duration", plain(c.duration_s) + " s");
 }
@@ -87,6 +90,12 @@ void add_motion(Table& table, const Metrics& m) {
     table.row("distance to point", "mean " + shown(com.distance_to_point_mean_mm, "mm") +
                                        ", 95 % " + shown(com.distance_to_point_p95_mm, "mm") +
                                        ", largest " + shown(com.distance_to_point_max_mm, "mm"));
+  }
+  if (m.path.cross_track_mean_mm) {
+    table.row("distance to path", "mean " + shown(m.path.cross_track_mean_mm, "mm") +
+                                      ", largest " + shown(m.path.cross_track_max_mm, "mm"));
+    table.row("along the path", "mean " + shown(m.path.along_track_mean_mm, "mm") +
+                                    " from where it is due");
   }
   table.row("radius", "mean " + shown(com.radius_mean_mm, "mm") + ", largest " +
                           shown(com.radius_max_mm, "mm") + ", variance " +

@@ -27,7 +27,8 @@ std::map<std::string, Folders> allowed_folders() {
       {"model", {"base", "types", "config"}},
       {"controller", below_stages},
       {"plant", below_stages},  // of model/ only the map of names, which both sides must read alike
-      {"experiment", {"base", "types", "config", "controller", "plant"}},
+      // path/ for the curve against which the walked way is measured.
+      {"experiment", {"base", "types", "config", "controller", "plant", "path"}},
   };
   for (const std::string& stage : stages) {
     allowed[stage] = below_stages;

@@ -62,6 +62,10 @@ duty = 2.0
 [foot]
 model = "cube"
 TOML
+cat > sandbox/path.toml <<'TOML'
+points = [[0, 0], [1, 0]]
+speed = "fast"
+TOML
 echo '<mujoco><worldbody>' > sandbox/broken.xml
 echo '<mujoco><worldbody><body><geom size="1"/></body></worldbody></mujoco>' > sandbox/no_legs.xml
 echo 'not XML at all' > sandbox/text.xml
@@ -88,6 +92,19 @@ wrong '--controller: given "mti"' spin --controller mti
 wrong '--radius' turn
 wrong '--radius: given 100' turn --radius 100
 wrong '--radius' turn --radius wide
+wrong '--radius: given inf' turn --radius inf
+wrong '--radius: missing; or give --speed, --path or --config' turn --rate 0.5
+wrong '--speed: given 9' turn --speed 9
+wrong '--speed: given -0.2' turn --path figure8 --speed -0.2
+wrong '--speed excludes --radius' turn --speed 0.2 --radius 0.5
+wrong '--path excludes --radius' turn --path figure8 --radius 0.5
+wrong '--path excludes --rate' turn --path figure8 --rate 0.5
+wrong '--path excludes --heading-offset-deg' turn --path figure8 --heading-offset-deg 90
+wrong '--path: given "figure9"; allowed: figure8, square; did you mean figure8?' turn --path figure9
+wrong '--path: given "nowhere.toml": no such file' turn --path nowhere.toml
+wrong 'path.toml:2: speed: given "fast"; allowed: 0.01 to 2 m/s' turn --path path.toml
+wrong '--laps: given 0' turn --path figure8 --laps 0
+wrong '--path' spin --path figure8
 wrong 'check, dump, doc' config
 wrong 'FILE' config check
 
@@ -117,6 +134,31 @@ wrong 'unknown_key.toml:2: gait.perid' config check unknown_key.toml
 wrong_lines 3 'three_things.toml:1: controller' spin --config three_things.toml
 wrong_lines 3 'three_things.toml:5: foot.model' config check three_things.toml
 wrong_lines 2 '--sensors' spin --sensors perfect --set gait.duty=2
+
+# Experiments.
+cat > sandbox/experiment.toml <<'TOML'
+[common]
+run.turns = 0.02
+run.settle_time = 0.1
+gait.stand_time = 0.2
+[[rows]]
+label = "one"
+controller = "asc"
+TOML
+sed 's/asc/acs/' sandbox/experiment.toml > sandbox/bad_row.toml
+sed 's/turns = 0.02/tunrs = 1/' sandbox/experiment.toml > sandbox/bad_key.toml
+wrong 'FILE' sweep
+wrong 'nowhere.toml: no such file' sweep nowhere.toml
+wrong 'bad_row.toml:5: controller: given "acs"' sweep bad_row.toml
+wrong 'bad_key.toml:2: run.tunrs' sweep bad_key.toml
+wrong '--jobs: given -1' sweep experiment.toml --jobs -1
+wrong '--seeds: given 0' sweep experiment.toml --seeds 0
+wrong '--turns: given 0' sweep experiment.toml --turns 0
+wrong 'file' sweep experiment.toml --out file
+wrong 'FIGURE' reproduce
+wrong 'given "fig66"' reproduce fig66
+wrong '--turns: given 0' reproduce fig6 --turns 0
+wrong '--profile: given "real"' spin --profile real
 
 # The run folder.
 wrong '--out' spin --out ''
@@ -151,11 +193,31 @@ cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy || fail 'run.toml give
 grep -q 'Run folder: again' stdout || fail 'the table does not name the run folder'
 cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy && fail 'another seed, the same trace'
 
+# A turn along a path, and the same again from what it left.
+"$program" turn --path square --laps 0.01 --set run.settle_time=0.2 > stdout 2> stderr ||
+  fail 'a short turn'
+grep -q 'distance to path' stdout || fail 'the table does not tell the distance to the path'
+"$program" turn --config runs/turn-flat-square-seed1/run.toml --out along --quiet > stdout 2> stderr ||
+  fail 'a turn from run.toml'
+cmp -s runs/turn-flat-square-seed1/trace.npy along/trace.npy || fail 'run.toml gives another turn'
+
 # A robot that cannot stand falls: exit code 1, and the run folder tells.
 "$program" spin --set plant.torque_scale=0.1 --out fallen > stdout 2> stderr
 code=$?
 [ $code -eq 1 ] || fail "exit code $code after a fall, not 1"
 grep -q '"fell": true' fallen/metrics.json || fail 'metrics.json does not tell of the fall'
+
+# A sweep, and the same again from what it left.
+"$program" sweep sandbox/experiment.toml --jobs 2 --seeds 2 --out swept > stdout 2> stderr ||
+  fail 'a short sweep'
+cp swept/experiment-trials.csv first.csv && cp stdout first.md
+"$program" sweep sandbox/experiment.toml --jobs 1 --seeds 2 --out swept > stdout 2> stderr ||
+  fail 'a sweep that was done'
+grep -q '2 of 2 trials were there' stderr || fail 'a finished sweep runs again'
+cmp -s swept/experiment-trials.csv first.csv && cmp -s stdout first.md || fail 'another table'
+[ "$(ls swept | xargs)" = \
+  'experiment-trials.csv experiment.csv experiment.json experiment.md results.jsonl traces' ] ||
+  fail 'files of a sweep'
 
 # Programs of other packages.
 mkdir bin

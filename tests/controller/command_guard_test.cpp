@@ -101,11 +101,11 @@ TEST_F(Guard, RejectsEveryValueThatIsNotFiniteAndKeepsTheLastCommand) {
   CommandGuard guard(config_, legs_);
   ASSERT_TRUE(guard.update(torque(Vec3(2.0, 2.0, 2.0)), kTick, command_));
   const JointCommand last = command_;
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(),
-                           std::numeric_limits<double>::infinity(),
-                           -std::numeric_limits<double>::infinity()}) {
-    for (Vec3 LegCommand::*field : {&LegCommand::q, &LegCommand::dq, &LegCommand::kp,
-                                    &LegCommand::kd, &LegCommand::tau}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity()}) {
+    for (Vec3 LegCommand::*field :
+         {&LegCommand::q, &LegCommand::dq, &LegCommand::kp, &LegCommand::kd, &LegCommand::tau}) {
       JointCommand raw = torque(Vec3(9.0, 9.0, 9.0));
       (raw[Leg::kRL].*field)[1] = bad;
       EXPECT_FALSE(guard.update(raw, kTick, command_));

@@ -1,5 +1,6 @@
-// Counts what tick() takes from the heap by standing between the process and glibc's allocator. A program
-// of its own, because the replacement is process-wide; off under sanitizers, which bring their own.
+// Counts what tick() takes from the heap by standing between the process and glibc's allocator. A
+// program of its own, because the replacement is process-wide; off under sanitizers, which bring
+// their own.
 #include <execinfo.h>
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -132,11 +133,11 @@ TEST_P(EveryMode, TickTakesNothingFromTheHeap) {
   EXPECT_FALSE(is_stood_down(loop.controller.status()));
 }
 
-std::string mode_name(const testing::TestParamInfo<Modes>& info) {
+std::string mode_name(const testing::TestParamInfo<Modes>& mode) {
   const auto name = [](auto value) {
     return std::string(EnumNames<decltype(value)>::kNames.at(static_cast<std::size_t>(value)));
   };
-  const auto& [foot, planner, reference, tracker] = info.param;
+  const auto& [foot, planner, reference, tracker] = mode.param;
   return name(foot) + "_" + name(planner) + "_" + name(reference) + "_" + name(tracker);
 }
 

@@ -69,7 +69,9 @@ TEST(SpinController, AnswersTheSameInputsWithTheSameBits) {
   SpinController again = make_controller(config);
   again.reset(recording.start);
   for (std::size_t i = 0; i < recording.readings.size(); ++i) {
-    ASSERT_TRUE(equal(again.tick(recording.readings[i], recording.motions[i]), recording.commands[i])) << i;
+    ASSERT_TRUE(
+        equal(again.tick(recording.readings[i], recording.motions[i]), recording.commands[i]))
+        << i;
   }
 }
 
@@ -81,7 +83,9 @@ TEST(SpinController, IsAsNewAfterReset) {
   for (std::size_t i = 0; i < 333; ++i) used.tick(recording.readings[i], spin(-0.4));
   used.reset(recording.start);
   for (std::size_t i = 0; i < recording.readings.size(); ++i) {
-    ASSERT_TRUE(equal(used.tick(recording.readings[i], recording.motions[i]), recording.commands[i])) << i;
+    ASSERT_TRUE(
+        equal(used.tick(recording.readings[i], recording.motions[i]), recording.commands[i]))
+        << i;
   }
 }
 
@@ -117,6 +121,21 @@ TEST(SpinController, BridgesAFewBadReadingsOfAnySensor) {
     EXPECT_EQ(loop.controller.status(), ControllerStatus::kWalking);
     EXPECT_LT(tilt(loop.plant.truth()), 0.1);
   }
+}
+
+TEST(SpinController, TreatsABadCommandLikeABadReading) {
+  const Config config;
+  ClosedLoop loop(config);
+  loop.run(0.2, stand_still());
+  loop.run(0.5, spin(0.7));
+  MotionCommand bad = spin(kNan);
+  bad.point = Vec2(kNan, 0.0);
+  for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+    ASSERT_TRUE(is_finite(loop.tick(bad)));
+    ASSERT_EQ(loop.controller.status(), ControllerStatus::kWalking);
+  }
+  expect_stood_down(loop.tick(bad), config);
+  EXPECT_EQ(loop.controller.status(), ControllerStatus::kBadInput);
 }
 
 TEST(SpinController, KeepsTimeWhileItBridges) {
@@ -186,7 +205,8 @@ TEST(SpinController, StandsDownWhenTheRobotHasSunk) {
   loop.run(0.2, stand_still());
   for (int i = 0; i < 1000 && !is_stood_down(loop.controller.status()); ++i) {
     SensorReading sensors = loop.plant.sense();
-    sensors.joint_position = PerLeg<Vec3>::filled(Vec3(0.0, 1.9, -2.7));  // hips 9 cm above the feet
+    sensors.joint_position =
+        PerLeg<Vec3>::filled(Vec3(0.0, 1.9, -2.7));  // hips 9 cm above the feet
     loop.controller.tick(sensors, stand_still());
   }
   EXPECT_EQ(loop.controller.status(), ControllerStatus::kFallen);

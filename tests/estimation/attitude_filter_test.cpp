@@ -38,7 +38,8 @@ TEST(AttitudeFilter, IntegratesTheGyroExactlyOnSo3) {
   AttitudeFilter filter{config};
   const Vec3 w_WB_B(0.4, -0.7, 1.3);
   Attitude out;
-  for (int i = 0; i < 500; ++i) out = filter.update({w_WB_B, gravity_B(out.R_WB), Vec3::Zero()}, kTick);
+  for (int i = 0; i < 500; ++i)
+    out = filter.update({w_WB_B, gravity_B(out.R_WB), Vec3::Zero()}, kTick);
   EXPECT_LT(distance(out.R_WB, exp_so3(1.0 * w_WB_B)), 1e-10);
 }
 
@@ -47,7 +48,8 @@ TEST(AttitudeFilter, LearnsTheGyroBiasAtRestShrunkTowardsNone) {
   AttitudeFilter filter{config};
   const Vec3 bias(2e-4, -3e-4, 1e-4);
   for (int n = 1; n <= 1000; ++n) {
-    const Attitude out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero(), true}, kTick);
+    const Attitude out =
+        filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero(), true}, kTick);
     const double share = n / (n + config.gyro_rest_samples);
     ASSERT_LT(distance(filter.gyro_bias(), share * bias), 1e-15);
     ASSERT_LT(distance(out.w_WB_B, (1.0 - share) * bias), 1e-15);
@@ -63,7 +65,8 @@ TEST(AttitudeFilter, TiltErrorDecaysWithTheTimeConstant) {
     filter.reset(exp_so3(kInitial * axis) * truth);
     const int ticks = static_cast<int>(std::lround(config.attitude_time_constant / kTick));
     Attitude out;
-    for (int i = 0; i < ticks; ++i) out = filter.update({Vec3::Zero(), gravity_B(truth), Vec3::Zero(), true}, kTick);
+    for (int i = 0; i < ticks; ++i)
+      out = filter.update({Vec3::Zero(), gravity_B(truth), Vec3::Zero(), true}, kTick);
     // (1 - dt / T)^(T / dt) against 1 / e: dt / 2T = 2.5e-4; sine against angle: 1e-7.
     EXPECT_NEAR(tilt_error(out.R_WB, truth) / kInitial, std::exp(-1.0), 5e-4);
   }
@@ -76,7 +79,8 @@ TEST(AttitudeFilter, FindsTheHorizontalGyroBiasWhileWalking) {
   Attitude out;
   // Ten times the slower of the two time constants.
   const int ticks = static_cast<int>(10.0 * config.gyro_bias_time_constant / kTick);
-  for (int i = 0; i < ticks; ++i) out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero()}, kTick);
+  for (int i = 0; i < ticks; ++i)
+    out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero()}, kTick);
   EXPECT_LT(distance(filter.gyro_bias(), bias), 1e-6);
   EXPECT_LT(tilt_error(out.R_WB, Mat3::Identity()), 1e-6);
 }
@@ -85,15 +89,16 @@ TEST(AttitudeFilter, YawIsTheIntegralOfTheGyroBecauseNothingObservesIt) {
   AttitudeFilter filter{EstimationConfig{}};
   const Vec3 bias(0.0, 0.0, 5e-4);
   Attitude out;
-  for (int i = 0; i < 50000; ++i) out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero()}, kTick);
+  for (int i = 0; i < 50000; ++i)
+    out = filter.update({bias, gravity_B(Mat3::Identity()), Vec3::Zero()}, kTick);
   EXPECT_NEAR(rpy_from_rotation(out.R_WB).yaw, 5e-4 * 50000 * kTick, 1e-9);
   EXPECT_LT(filter.gyro_bias().norm(), 1e-12);
 }
 
 TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
-  constexpr double kRate = 2.0;                 // rad/s
+  constexpr double kRate = 2.0;  // rad/s
   const Vec3 w_WB_B(0.0, 0.0, kRate);
-  const Vec3 p_axis_B(0.008, 0.003, 0.0);       // m, trunk origin from the axis
+  const Vec3 p_axis_B(0.008, 0.003, 0.0);  // m, trunk origin from the axis
   const Vec3 a_B = w_WB_B.cross(w_WB_B.cross(p_axis_B));
   const auto tilt_after_turning = [&](bool velocity_known) {
     AttitudeFilter filter{EstimationConfig{}};
@@ -108,18 +113,42 @@ TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
   };
   // The velocity lags the attitude by a tick, 4 mrad: that share of 0.43 mrad.
   EXPECT_LT(tilt_after_turning(true), 5e-6);
-  // Otherwise gravity would seem to lean by a / g = 3.5 mrad, fixed to the turning body: an error of
-  // a / (g T w) = 0.43 mrad for the filter's time constant T, and the bias estimate adds to it.
+  // Otherwise gravity would seem to lean by a / g = 3.5 mrad, fixed to the turning body: an error
+  // of a / (g T w) = 0.43 mrad for the filter's time constant T, and the bias estimate adds to it.
   EXPECT_GT(tilt_after_turning(false), 4e-4);
 }
 
-TEST(AttitudeFilter, IgnoresTheAccelerometerInFreeFall) {
+TEST(AttitudeFilter, LearnsNothingFromFreeFall) {
   AttitudeFilter filter{EstimationConfig{}};
   const Mat3 R_WB = rotation_from_rpy({0.1, 0.2, 0.3});
   filter.reset(R_WB);
   Attitude out;
-  for (int i = 0; i < 200; ++i) out = filter.update({Vec3::Zero(), Vec3(0.3, -0.2, 0.1), Vec3::Zero()}, kTick);
+  for (int i = 0; i < 200; ++i) out = filter.update({}, kTick);
   EXPECT_LT(distance(out.R_WB, R_WB), 1e-12);
+}
+
+TEST(AttitudeFilter, AccelerationsOfTheGaitThatAverageToZeroLeaveNoTilt) {
+  AttitudeFilter filter{EstimationConfig{}};
+  Attitude out;
+  double largest = 0.0;
+  for (int i = 0; i < 10000; ++i) {
+    // 4 Hz, sideways and vertical in step: the mean of the measured direction leans by
+    // 2 * 4 / (2 g^2) = 40 mrad, the mean of the measured vector does not.
+    const double step = std::cos(2.0 * kPi * 4.0 * i * kTick);
+    const Vec3 a_B = step * Vec3(2.0, -2.0, 4.0);
+    out = filter.update({Vec3::Zero(), gravity_B(Mat3::Identity()) + a_B, Vec3::Zero()}, kTick);
+    largest = std::max(largest, tilt_error(out.R_WB, Mat3::Identity()));
+  }
+  EXPECT_LT(largest, 5e-3);  // its ripple: 2.8 / g over the time constant and 2 pi 4 Hz, 2.9 mrad
+}
+
+TEST(AttitudeFilter, AnImpactTiltsItLittle) {
+  const EstimationConfig config;
+  AttitudeFilter filter{config};
+  const Vec3 impact(1e4, 0.0, 0.0);
+  const Attitude out = filter.update({Vec3::Zero(), impact, Vec3::Zero()}, kTick);
+  // Counted as no more than a few g for the one tick.
+  EXPECT_LT(tilt_error(out.R_WB, Mat3::Identity()), 5.0 * kTick / config.attitude_time_constant);
 }
 
 TEST(AttitudeFilter, ForgetsItsBiasOnReset) {

@@ -39,7 +39,7 @@ MotionRecord synthetic_spin(double turns, const Vec2& centre, const Vec2& bias, 
     RobotState estimate;
     estimate.p_WB = truth.base.p_WB + Vec3(0.003, 0.004, 0.5);
     estimate.rpy.yaw = yaw - 4.0 * kPi + 0.02;  // another branch
-    record.add(truth, yaw, estimate);
+    record.add(truth, yaw, estimate, 0.0);
   }
   return record;
 }
@@ -220,7 +220,7 @@ TEST(MetricsJson, WritesNullForWhatHasNoSensibleValue) {
 
 TEST(MetricsJson, OfOneSampleHasMeansButNoVariances) {
   MotionRecord record;
-  record.add(PlantTruth{}, 0.0, RobotState{});
+  record.add(PlantTruth{}, 0.0, RobotState{}, 0.0);
   const auto json = nlohmann::json::parse(to_json(evaluate(record, {}, kRate)));
   EXPECT_EQ(json.at("com").at("radius_mean_mm"), 0.0);
   EXPECT_TRUE(json.at("com").at("radius_variance_mm2").is_null());

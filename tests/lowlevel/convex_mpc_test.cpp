@@ -54,7 +54,8 @@ MpcInput standing() {
     step.reference = in.now;
     step.p_WG_mid = in.now.p_WG;
     step.stance = PerLeg<bool>::filled(true);
-    for (const Leg leg : kLegs) step.p_WC[leg] = {0.19 * fore_sign(leg), 0.111 * side_sign(leg), 0.0};
+    for (const Leg leg : kLegs)
+      step.p_WC[leg] = {0.19 * fore_sign(leg), 0.111 * side_sign(leg), 0.0};
   }
   return in;
 }
@@ -109,8 +110,8 @@ MpcInput turned(MpcInput in, double yaw) {
   return in;
 }
 
-/// A body that turns, tilts and steps at random.
-MpcInput random_input(std::mt19937& generator) {
+/// A body that turns, tilts and steps at random; each foot stands in `stance_share` of the steps.
+MpcInput random_input(std::mt19937& generator, double stance_share) {
   const auto uniform = [&](double limit) {
     return std::uniform_real_distribution<double>(-limit, limit)(generator);
   };
@@ -128,7 +129,7 @@ MpcInput random_input(std::mt19937& generator) {
     step.rpy_mid = {uniform(0.5), uniform(0.5), uniform(3.0)};
     step.p_WG_mid = vec3(0.3);
     for (const Leg leg : kLegs) {
-      step.stance[leg] = uniform(1.0) < 0.3;
+      step.stance[leg] = uniform(0.5) + 0.5 < stance_share;
       step.p_WC[leg] = vec3(0.5);
     }
   }
@@ -142,15 +143,15 @@ struct NaiveCondensing {
   VectorXd g;
 
   NaiveCondensing(const MpcConfig& config, const MpcInput& in) {
-    const int N = config.horizon;
     std::vector<SrbDynamics> steps;
     int inputs = 0;
-    for (int k = 0; k < N; ++k) {
+    for (int k = 0; k < config.horizon; ++k) {
       const MpcStep& step = in.steps[static_cast<std::size_t>(k)];
       std::vector<Vec3> arms;
       for (const Leg leg : kLegs) {
         if (step.stance[leg]) arms.push_back(step.p_WC[leg] - step.p_WG_mid);
       }
+      if (inputs + 3 * static_cast<int>(arms.size()) > QpSolver::kMaxVariables) break;
       steps.push_back(discretised(
           srb_dynamics(kMass, inertia_W(step.rpy_mid), exact_rate_map(step.rpy_mid), arms), in.dt));
       inputs += 3 * static_cast<int>(arms.size());
@@ -163,16 +164,16 @@ struct NaiveCondensing {
 
     H = 2.0 * config.weight_force * MatrixXd::Identity(inputs, inputs);
     g = VectorXd::Zero(inputs);
-    SrbState free = stacked(in.now);                                // state without any force
-    MatrixXd response = MatrixXd::Zero(test::kSrbStates, inputs);   // d(state)/dU
+    SrbState free = stacked(in.now);                               // state without any force
+    MatrixXd response = MatrixXd::Zero(test::kSrbStates, inputs);  // d(state)/dU
     int first = 0;
-    for (int k = 0; k < N; ++k) {
-      const SrbDynamics& d = steps[static_cast<std::size_t>(k)];
+    for (std::size_t k = 0; k < steps.size(); ++k) {
+      const SrbDynamics& d = steps[k];
       free = (d.A * free).eval();
       response = (d.A * response).eval();
       response.middleCols(first, d.B.cols()) += d.B;
       first += static_cast<int>(d.B.cols());
-      const SrbState error = free - stacked(in.steps[static_cast<std::size_t>(k)].reference);
+      const SrbState error = free - stacked(in.steps[k].reference);
       H += 2.0 * response.transpose() * weight.asDiagonal() * response;
       g += 2.0 * response.transpose() * weight.cwiseProduct(error);
     }
@@ -191,8 +192,8 @@ TEST(SingleRigidBody, DiscretisationMatchesScipysMatrixExponential) {
     const Mat3 I_W = R_WB * test::to_vec3(c.at("I_body")).asDiagonal() * R_WB.transpose();
     std::vector<Vec3> arms;
     for (const auto& arm : c.at("r_contacts_world")) arms.push_back(test::to_vec3(arm));
-    const SrbDynamics continuous =
-        srb_dynamics(c.at("mass"), I_W, exact ? exact_rate_map(rpy) : test::small_angle_rate_map(rpy), arms);
+    const SrbDynamics continuous = srb_dynamics(
+        c.at("mass"), I_W, exact ? exact_rate_map(rpy) : test::small_angle_rate_map(rpy), arms);
     const SrbDynamics discrete = discretised(continuous, c.at("dt"));
     const auto expect_equal = [&](const MatrixXd& given, const char* key) {
       for (Eigen::Index row = 0; row < given.rows(); ++row) {
@@ -215,7 +216,7 @@ TEST_P(Horizon, CondensesInClosedFormToWhatStackingTheDynamicsGives) {
   ConvexMpc mpc(config, kMass, kInertia);
   std::mt19937 generator(11);
   for (int i = 0; i < 10; ++i) {
-    const MpcInput in = random_input(generator);
+    const MpcInput in = random_input(generator, i < 5 ? 0.35 : 0.9);  // 0.9: too many for 16 steps
     const NaiveCondensing naive(config, in);
     mpc.update(in);
     ASSERT_EQ(mpc.problem().H.rows(), naive.H.rows());
@@ -226,6 +227,12 @@ TEST_P(Horizon, CondensesInClosedFormToWhatStackingTheDynamicsGives) {
 }
 
 INSTANTIATE_TEST_SUITE_P(ConvexMpc, Horizon, testing::Values(1, 2, 3, 10, 16, 24));
+
+TEST(ConvexMpc, EndsItsPredictionBeforeItHasMoreForcesThanTheSolverTakes) {
+  ConvexMpc mpc(config_with_horizon(kMaxHorizon), kMass, kInertia);
+  mpc.update(standing());
+  EXPECT_EQ(mpc.problem().H.rows(), 3 * 40);  // 10 steps of 4 feet; 11 would be 44 > kMaxForces
+}
 
 class StandingMpc : public testing::Test {
  protected:

@@ -97,7 +97,8 @@ class WholeBody : public testing::Test {
     s.p_WG = model_.p_WG();
     s.v_WG_W = model_.v_WG_W();
     for (const Leg leg : kLegs) {
-      const FootState f = foot_state(model_.legs()[leg], s.joint_position[leg], s.joint_velocity[leg]);
+      const FootState f =
+          foot_state(model_.legs()[leg], s.joint_position[leg], s.joint_velocity[leg]);
       s.p_WF[leg] = s.p_WB + s.R_WB * f.p_BF;
       s.v_WF_W[leg] = model_.foot_jacobian(leg) * velocity_of(s);
       in.contacts[leg].in_contact = in.contacts[leg].measured = stance[leg];
@@ -166,7 +167,8 @@ VecDof WholeBody::by_null_space_projections(const WbcInput& in) const {
                        kd.cwiseProduct(in.reference.v_WG_W - in.state.v_WG_W) - model_.com_bias()});
   for (const Leg leg : kLegs) {
     if (in.contacts[leg].in_contact) continue;
-    tasks.push_back({model_.foot_jacobian(leg), swing_acceleration(in, leg) - model_.foot_bias(leg)});
+    tasks.push_back(
+        {model_.foot_jacobian(leg), swing_acceleration(in, leg) - model_.foot_bias(leg)});
   }
 
   const MatDof M_inverse = model_.mass_matrix().inverse();
@@ -289,7 +291,8 @@ TEST_F(WholeBody, JointTargetsCarryTheBodyToItsReferenceOverFeetThatStay) {
         log_so3(R_WB * foot.R_BS * shank_rotation(in.state.joint_position[leg]).transpose());
     const Vec3 rolled = kRadius * shank_turn.cross(Vec3::UnitZ());
     // First order in the shift: what is left is about shift^2 / leg length.
-    EXPECT_LT(distance(p_WB + R_WB * foot.p_BF, in.state.p_WF[leg] + rolled), 30.0 * kShift * kShift);
+    EXPECT_LT(distance(p_WB + R_WB * foot.p_BF, in.state.p_WF[leg] + rolled),
+              30.0 * kShift * kShift);
   }
 }
 
@@ -308,7 +311,8 @@ TEST_F(WholeBody, KeepsEveryForceInTheFrictionPyramid) {
     for (const Leg leg : kLegs) {
       const Vec3& f_W = out.forces.f_W[leg];
       if (in.contacts[leg].in_contact) {
-        EXPECT_GT((pyramid.C * f_W - pyramid.lower).minCoeff(), -1e-6);  // the solver's tolerance, N
+        EXPECT_GT((pyramid.C * f_W - pyramid.lower).minCoeff(),
+                  -1e-6);  // the solver's tolerance, N
       } else {
         EXPECT_EQ(f_W, Vec3::Zero());
       }
@@ -372,7 +376,8 @@ TEST(DampedInverse, NeverAmplifiesMoreThanItsDampingAllowsAtSingularPostures) {
 TEST(DampedInverse, IsContinuousWhereDampingSetsIn) {
   // Two sides of |det| = 2e-4 m^3.
   const Mat3 base = Vec3(0.1, 0.1, 0.02).asDiagonal();
-  const Mat3 inside = damped_inverse(base * (1.0 - 1e-9)), outside = damped_inverse(base * (1.0 + 1e-9));
+  const Mat3 inside = damped_inverse(base * (1.0 - 1e-9)),
+             outside = damped_inverse(base * (1.0 + 1e-9));
   EXPECT_LT(distance(inside, outside), 1e-3 * outside.norm());
 }
 

@@ -22,8 +22,8 @@ using test::velocity_of;
 
 constexpr int kDraws = 20;
 constexpr double kExact = 1e-12;  // a few hundred roundings of numbers of order one
-// Central differences over kStep: the cut-off terms are about kStep^2 times a third derivative of at
-// most 10^3 (joints at 4 rad/s), rounding about 1e-15 / kStep.
+// Central differences over kStep: the cut-off terms are about kStep^2 times a third derivative of
+// at most 10^3 (joints at 4 rad/s), rounding about 1e-15 / kStep.
 constexpr double kStep = 1e-5;
 constexpr double kDifference = 1e-6;
 
@@ -295,18 +295,18 @@ TEST(RobotModelErrors, ListTheJointsWhenALegIsNotFound) {
 }
 
 TEST(RobotModelErrors, NameEveryLegThatIsNotStraightAtZero) {
-  const std::string errors = errors_of(
-      write(replaced(text_of_robot(), "_shank\" pos=\"0 0 -0.215\"", "_shank\" pos=\"0.01 0 -0.2\"")));
+  const std::string errors = errors_of(write(
+      replaced(text_of_robot(), "_shank\" pos=\"0 0 -0.215\"", "_shank\" pos=\"0.01 0 -0.2\"")));
   for (const Leg leg : kLegs) {
     expect_mentions(errors, std::string(name(leg)) + ": the leg must hang straight down");
   }
 }
 
 TEST(RobotModelErrors, NameADegreeOfFreedomTooMany) {
-  const std::string errors = errors_of(write(
-      replaced(text_of_robot(), "<site name=\"imu\" group=\"4\"/>",
-               "<body><inertial mass=\"0.1\" pos=\"0 0 0\" diaginertia=\"1e-4 1e-4 1e-4\"/>"
-               "<joint name=\"arm\" axis=\"0 1 0\"/></body>")));
+  const std::string errors = errors_of(
+      write(replaced(text_of_robot(), "<site name=\"imu\" group=\"4\"/>",
+                     "<body><inertial mass=\"0.1\" pos=\"0 0 0\" diaginertia=\"1e-4 1e-4 1e-4\"/>"
+                     "<joint name=\"arm\" axis=\"0 1 0\"/></body>")));
   expect_mentions(errors, "has 19 degrees of freedom; expected 18");
 }
 

@@ -1,4 +1,5 @@
-// The leg-odometry Kalman filter written out in full: 18 states, up to 28 measurements, dense matrices.
+// The leg-odometry Kalman filter written out in full: 18 states, up to 28 measurements, dense
+// matrices.
 #pragma once
 
 #include <Eigen/LU>
@@ -51,7 +52,8 @@ class DenseOdometryFilter {
     noise.segment<3>(3).setConstant(config_.process_velocity * dt);
     for (const Leg leg : kLegs) {
       drift.segment<3>(foot(leg)) = dt * in.foot[leg].v_WF_rolling_W;
-      noise.segment<3>(foot(leg)).setConstant(config_.process_foot * dt * factor(in.foot[leg].trust));
+      noise.segment<3>(foot(leg)).setConstant(config_.process_foot * dt *
+                                              factor(in.foot[leg].trust));
     }
     x_ = F * x_ + drift;
     P_ = (F * P_ * F.transpose()).eval();

@@ -1,4 +1,5 @@
-// The linear single rigid body of the convex MPC, written out in full: the reference for the condensed one.
+// The linear single rigid body of the convex MPC, written out in full: the reference for the
+// condensed one.
 #pragma once
 
 #include <Eigen/Core>
@@ -23,7 +24,8 @@ struct SrbDynamics {
 /// d(rpy)/dt = T omega for small roll and pitch ([DiCarlo18]).
 inline Mat3 small_angle_rate_map(const RollPitchYaw& rpy) { return rot_z(rpy.yaw).transpose(); }
 
-/// The same without approximation (E24): column k of the inverse is the axis that angle k turns about.
+/// The same without approximation (E24): column k of the inverse is the axis that angle k turns
+/// about.
 inline Mat3 exact_rate_map(const RollPitchYaw& rpy) {
   Mat3 axes;
   axes << rot_z(rpy.yaw) * rot_y(rpy.pitch) * Vec3::UnitX(), rot_z(rpy.yaw) * Vec3::UnitY(),

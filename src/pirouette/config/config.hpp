@@ -64,6 +64,14 @@ struct GaitConfig {
   double stand_time = 1.0;
   double swing_height = 0.05;
   double early_contact_progress = 0.6;
+  double max_turn_per_stride = 1.05;
+  double min_period = 0.18;
+
+  /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far in one.
+  double period_at(double yaw_rate) const {
+    if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
+    return std::max(std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate));
+  }
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -74,6 +82,9 @@ struct GaitConfig {
     v(s.swing_height, "swing_height", "m", Range{0.005, 0.2}, "Apex of the swing above its ends.");
     v(s.early_contact_progress, "early_contact_progress", "1", Range{0.0, 1.0},
       "From this share of the swing on, a measured contact ends the swing early.");
+    v(s.max_turn_per_stride, "max_turn_per_stride", "rad", Range{0.1, 10.0},
+      "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk by more.");
+    v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "That rule shortens no further.");
   }
 };
 
@@ -170,6 +181,7 @@ struct PathConfig {
   double max_position_lead = 0.03;
   double max_integrated_lead = 0.10;
   double max_yaw_lead = 0.5;
+  double max_path_lead = 0.1;
   double max_acceleration = 0.5;
   double max_yaw_acceleration = 1.5;
 
@@ -199,6 +211,8 @@ struct PathConfig {
       "Integrated: the set-point stays this close to the CoM.");
     v(s.max_yaw_lead, "max_yaw_lead", "rad", Range{0.01, 3.0},
       "The yaw reference stays this close to the yaw (wind-up limit).");
+    v(s.max_path_lead, "max_path_lead", "m", Range{0.005, 10.0},
+      "On a path from a file the reference waits for the robot when this far ahead of it.");
     v(s.max_acceleration, "max_acceleration", "m/s^2", Range{0.01, 20.0},
       "Ramp of the commanded velocity.");
     v(s.max_yaw_acceleration, "max_yaw_acceleration", "rad/s^2", Range{0.01, 50.0},
@@ -227,7 +241,7 @@ struct EstimationConfig {
   double measurement_velocity = 1e-3;
   double measurement_height = 1e-6;
   double swing_noise_factor = 100.0;
-  double trust_window = 0.2;
+  double trust_window = 0.02;
   double attitude_time_constant = 4.0;
   double gyro_bias_time_constant = 60.0;
   double gyro_rest_samples = 600.0;
@@ -457,6 +471,9 @@ struct PlantConfig {
 struct RunConfig {
   double rate = 0.7;
   std::array<double, 2> velocity = {0.0, 0.0};
+  std::string path;
+  double path_speed = 0.0;
+  double laps = 2.0;
   double turns = 8.0;
   double settle_time = 5.0;
   std::int64_t seed = 1;
@@ -471,7 +488,12 @@ struct RunConfig {
     v(s.rate, "rate", "rad/s", Range{-10.0, 10.0}, "Commanded yaw rate; positive turns left.");
     v(s.velocity, "velocity", "m/s, m/s", Range{-2.0, 2.0},
       "Commanded velocity, forwards and to the left; zero spins on the spot.");
-    v(s.turns, "turns", "1", Range{0.01, 1e5}, "Turns to record after settling.");
+    v(s.path, "path",
+      "Path to follow instead of run.velocity and run.rate: a name under experiments/paths/ or a file ending in .toml; "
+      "empty: none.");
+    v(s.path_speed, "path_speed", "m/s", Range{0.0, 2.0}, "Speed along run.path; 0: as its file says.");
+    v(s.laps, "laps", "1", Range{0.01, 1e5}, "Laps of a closed run.path to record after settling.");
+    v(s.turns, "turns", "1", Range{0.01, 1e5}, "Turns to record after settling; 10 s each without a yaw rate.");
     v(s.settle_time, "settle_time", "s", Range{0.0, 600.0},
       "Time from the command to the first recorded sample.");
     v(s.seed, "seed", "1", Range{0, 9e15}, "Seed of noise, biases and terrain.");

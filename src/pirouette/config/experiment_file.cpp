@@ -5,6 +5,7 @@
 #include <set>
 #include <utility>
 
+#include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
@@ -329,7 +330,7 @@ class Expansion {
     sources.controller = experiment_.rows[row].controller;
     for (const Setting& s : settings) sources.overrides.push_back(s.key + "=" + s.value);
     if (changes_.turns) {
-      sources.overrides.push_back("run.turns=" + std::to_string(*changes_.turns));
+      sources.overrides.push_back("run.turns=" + toml_literal(*changes_.turns));
     }
     const Result<Config> config = load_config(sources);
     if (config) return config.value();

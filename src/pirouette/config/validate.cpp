@@ -6,6 +6,7 @@
 #include <optional>
 #include <sstream>
 
+#include "pirouette/config/path_file.hpp"
 #include "pirouette/config/suggest.hpp"
 
 namespace pirouette {
@@ -85,6 +86,11 @@ Errors validate(const Config& config) {
   };
 
   if (const Result<std::string> robot = resolve_robot(config); !robot) errors = robot.errors();
+
+  if (!config.run.path.empty()) {
+    const Result<fs::path> path = resolve_path(config.run);
+    if (!path) errors.insert(errors.end(), path.errors().begin(), path.errors().end());
+  }
 
   constexpr double kRounding = 1e-9;  // of a ratio of two decimal fractions
   const double control_period = 1.0 / config.control.rate;

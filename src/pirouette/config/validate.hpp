@@ -10,7 +10,7 @@
 
 namespace pirouette {
 
-/// Relations between parameters, and the robot's file. Part of load_config; call it after changing
+/// Relations between parameters, and the files of robot and path. Part of load_config; call it after changing
 /// a Config in code. Empty: all is well.
 Errors validate(const Config& config);
 

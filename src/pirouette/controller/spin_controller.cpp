@@ -374,7 +374,8 @@ void SpinController::Impl::plan_feet(double dt) {
 MpcInput SpinController::Impl::mpc_input() const {
   const RobotState& state = trace.state;
   MpcInput in;
-  in.dt = config.mpc.step_share * config.gait.period;
+  const double stride = trace.gait.stance_duration + trace.gait.swing_duration;
+  in.dt = config.mpc.step_share * (trace.gait.walking ? stride : config.gait.period);
   in.n_W = trace.plane.normal();
   in.now.rpy = Vec3(state.rpy.roll, state.rpy.pitch, state.rpy.yaw);
   in.now.p_WG = state.p_WG;
@@ -483,6 +484,9 @@ SpinController& SpinController::operator=(SpinController&&) noexcept = default;
 SpinController::~SpinController() = default;
 
 void SpinController::reset(const BasePose& start) { impl_->reset(start); }
+void SpinController::follow(std::optional<Path> path) {
+  impl_->path_reference.follow(std::move(path));
+}
 ControllerStatus SpinController::status() const { return impl_->trace.status; }
 const TickTrace& SpinController::trace() const { return impl_->trace; }
 const TickTiming& SpinController::timing() const { return impl_->timing; }
@@ -500,6 +504,7 @@ const JointCommand& SpinController::tick(const SensorReading& sensors, const Mot
   t.sensors = s.last_good;
 
   s.estimate(t.sensors, dt);
+  s.clock.set_timing(s.config.gait.period_at(s.last_good_command.yaw_rate), s.config.gait.duty);
   t.gait = s.clock.update(s.last_good_command.walk, dt);
   t.status = t.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
   s.find_contacts(t.sensors);

@@ -2,10 +2,12 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "pirouette/base/result.hpp"
 #include "pirouette/config/config.hpp"
+#include "pirouette/path/path.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
 #include "pirouette/types/sensor_reading.hpp"
@@ -28,8 +30,13 @@ class SpinController {
   SpinController& operator=(SpinController&&) noexcept;
   ~SpinController();
 
-  /// Forgets everything and starts the estimator from `start`.
+  /// Forgets everything but the path and starts the estimator from `start`.
   void reset(const BasePose& start);
+
+  /// From now on commands are followed along `path`, given in a frame of its own: where walking
+  /// begins (MotionCommand::point and heading, else where the robot stands) the path begins.
+  /// Absent: no path, the command's twist. Not for use within the control loop: it may allocate.
+  void follow(std::optional<Path> path);
 
   /// One control period. No exception, no allocation, no I/O. After a failure that latches
   /// (is_stood_down) every further command is the damped stand-down until reset().

@@ -56,7 +56,8 @@ ComMetrics evaluate_com(const MotionRecord& record, const CommandedMotion& comma
   com.peak_to_peak_x_mm = scaled(peak_to_peak(component(path, 0), window), kMillimetres);
   com.peak_to_peak_y_mm = scaled(peak_to_peak(component(path, 1), window), kMillimetres);
   com.drift_per_turn_mm = scaled(drift_per_turn(record.yaw, record.p_WG), kMillimetres);
-  if (const auto bias = body_bias(record.yaw, record.v_WG_W, commanded.v_H)) {
+  const auto bias = body_bias(record.yaw, record.v_WG_W, commanded.v_H);
+  if (bias && !commanded.hold_heading) {
     com.body_bias_mm_s = bias->norm() * kMillimetres;
     com.body_bias_x_mm_s = bias->x() * kMillimetres;
     com.body_bias_y_mm_s = bias->y() * kMillimetres;
@@ -66,6 +67,20 @@ ComMetrics evaluate_com(const MotionRecord& record, const CommandedMotion& comma
   com.velocity_range_x_mm_s = scaled(peak_to_peak(component(velocity, 0), window), kMillimetres);
   com.velocity_range_y_mm_s = scaled(peak_to_peak(component(velocity, 1), window), kMillimetres);
   return com;
+}
+
+PathMetrics evaluate_path(const MotionRecord& record, const CommandedMotion& commanded) {
+  constexpr double kWindow = 0.3;  // m, about the last nearest point: stays on its branch
+  if (!commanded.path || record.p_WG.empty()) return {};
+  std::vector<double> cross_track, along_track;
+  double s = record.arc_length.front();
+  for (std::size_t i = 0; i < record.p_WG.size(); ++i) {
+    s = commanded.path->nearest(record.p_WG[i], s, kWindow);
+    cross_track.push_back((record.p_WG[i] - commanded.path->at(s).p).norm());
+    along_track.push_back(std::abs(s - record.arc_length[i]));
+  }
+  return {scaled(mean(cross_track), kMillimetres), scaled(maximum(cross_track), kMillimetres),
+          scaled(mean(along_track), kMillimetres)};
 }
 
 AccelerationMetrics evaluate_acceleration(const MotionRecord& record, double rate) {
@@ -82,7 +97,8 @@ AccelerationMetrics evaluate_acceleration(const MotionRecord& record, double rat
 
 }  // namespace
 
-void MotionRecord::add(const PlantTruth& truth, double true_yaw, const RobotState& estimate) {
+void MotionRecord::add(const PlantTruth& truth, double true_yaw, const RobotState& estimate,
+                       double reference_arc_length) {
   const RollPitchYaw rpy = rpy_from_rotation(truth.base.R_WB);
   time.push_back(truth.time);
   p_WG.emplace_back(truth.p_WG.head<2>());
@@ -95,6 +111,7 @@ void MotionRecord::add(const PlantTruth& truth, double true_yaw, const RobotStat
   pitch_rate.push_back(truth.base.w_WB_B.y());
   position_error.push_back((estimate.p_WB - truth.base.p_WB).head<2>().norm());
   yaw_error.push_back(std::abs(wrap_angle(estimate.rpy.yaw - true_yaw)));
+  arc_length.push_back(reference_arc_length);
 }
 
 Number peak_to_peak(std::span<const double> x, std::size_t length) {
@@ -150,6 +167,7 @@ Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, d
     if (commanded.yaw_rate != 0.0) m.yaw_rate_error = *m.yaw_rate_mean / commanded.yaw_rate - 1.0;
   }
   m.com = evaluate_com(record, commanded);
+  m.path = evaluate_path(record, commanded);
   const auto window = static_cast<std::size_t>(kRecordLength * rate);
   m.attitude = {mean(record.roll),
                 variance(record.roll),

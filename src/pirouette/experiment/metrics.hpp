@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "pirouette/base/math.hpp"
+#include "pirouette/path/path.hpp"
 #include "pirouette/types/plant_truth.hpp"
 #include "pirouette/types/robot_state.hpp"
 
@@ -25,6 +26,8 @@ struct CommandedMotion {
   Vec2 point = Vec2::Zero();  ///< m
   Vec2 v_H = Vec2::Zero();    ///< m/s, heading axes
   double yaw_rate = 0.0;      ///< rad/s
+  bool hold_heading = false;  ///< v_H does not turn with the path
+  std::optional<Path> path;   ///< in the world, from where the command came; absent: a spin
 };
 
 /// The recorded part of a run: one entry per control tick in every list.
@@ -40,9 +43,11 @@ struct MotionRecord {
   std::vector<double> pitch_rate;      ///< rad/s, true, about the body's y axis
   std::vector<double> position_error;  ///< m, horizontal, estimated to true trunk position
   std::vector<double> yaw_error;       ///< rad, |estimated - true|
+  std::vector<double> arc_length;      ///< m, of the time-indexed reference along its path
 
   /// `yaw` is the true yaw, unwrapped.
-  void add(const PlantTruth& truth, double yaw, const RobotState& estimate);
+  void add(const PlantTruth& truth, double yaw, const RobotState& estimate,
+           double reference_arc_length);
 };
 
 struct ComMetrics {
@@ -54,6 +59,10 @@ struct ComMetrics {
   Number body_bias_mm_s, body_bias_x_mm_s, body_bias_y_mm_s;
   Number bias_circle_mm;
   Number velocity_range_x_mm_s, velocity_range_y_mm_s;
+};
+
+struct PathMetrics {
+  Number cross_track_mean_mm, cross_track_max_mm, along_track_mean_mm;
 };
 
 struct AttitudeMetrics {
@@ -78,7 +87,7 @@ struct TimingMetrics {
 
 /// What the numbers hold for.
 struct RunContext {
-  std::string robot, terrain, controller, profile, estimator, reference, tracker, foot_model, com_planner;
+  std::string path, robot, terrain, controller, profile, estimator, reference, tracker, foot_model, com_planner;
   double duty = 0.0;
   double period = 0.0;
   double torsional_friction = 0.0;
@@ -98,6 +107,7 @@ struct Metrics {
   double turns_done = 0.0;
   Number yaw_rate_mean, yaw_rate_error;
   ComMetrics com;
+  PathMetrics path;
   AttitudeMetrics attitude;
   AccelerationMetrics acceleration;
   EstimatorMetrics estimator;
@@ -175,6 +185,13 @@ void Metrics::fields(Self& m, Visit&& v) {
     "range of the CoM's velocity along world x in 10 s, mean over the record");
   v(com.velocity_range_y_mm_s, "com.velocity_range_y_mm_s", "mm/s", "the same along y");
 
+  auto& path = m.path;
+  v(path.cross_track_mean_mm, "path.cross_track_mean_mm", "mm",
+    "CoM to the nearest point of the commanded path, mean; null for a spin");
+  v(path.cross_track_max_mm, "path.cross_track_max_mm", "mm", "largest");
+  v(path.along_track_mean_mm, "path.along_track_mean_mm", "mm",
+    "arc length of that point less the one due at the time, mean size");
+
   auto& attitude = m.attitude;
   v(attitude.roll_mean, "attitude.roll_mean", "rad", "of the trunk, true");
   v(attitude.roll_variance, "attitude.roll_variance", "rad^2", "unbiased");
@@ -216,7 +233,7 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(context.foot_model, "context.foot_model", "", "foot.model");
   v(context.com_planner, "context.com_planner", "", "com.planner");
   v(context.duty, "context.duty", "1", "gait.duty");
-  v(context.period, "context.period", "s", "gait.period");
+  v(context.period, "context.period", "s", "of the stride, at the commanded yaw rate");
   v(context.torsional_friction, "context.torsional_friction", "m", "plant.torsional_friction");
   v(context.friction, "context.friction", "1", "plant.friction");
   v(context.seed, "context.seed", "", "run.seed");
@@ -225,6 +242,7 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(context.commit, "context.commit", "", "of this program's source");
   v(context.version, "context.version", "", "of this program");
   v(context.sensors, "context.sensors", "", "noisy or ideal");
+  v(context.path, "context.path", "", "run.path; empty: none");
   v(context.yaw_rate, "context.yaw_rate", "rad/s", "commanded");
   v(context.velocity_x, "context.velocity_x", "m/s", "commanded, forwards");
   v(context.velocity_y, "context.velocity_y", "m/s", "commanded, to the left");

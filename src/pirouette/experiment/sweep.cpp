@@ -258,9 +258,10 @@ MetricValues metric_values(const Metrics& metrics) {
 }
 
 std::vector<std::string> metric_names() {
-  const MetricValues values = metric_values(Metrics{});
+  const Metrics metrics;
+  const MetricValues values = metric_values(metrics);
   std::vector<std::string> names;
-  Metrics::fields(Metrics{}, [&](const auto&, const char* key, const char*, const char*) {
+  Metrics::fields(metrics, [&](const auto&, const char* key, const char*, const char*) {
     if (values.contains(key)) names.emplace_back(key);
   });
   return names;
@@ -341,14 +342,13 @@ Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& 
     found->second.config = nullptr;
   }
 
-  const std::size_t count = pending.size();
   errors = Pool(std::move(pending), distinct.size(), options, log.value()).run();
   if (!errors.empty()) return errors;
   for (const std::string& key : result.keys) {
     const MetricValues* values = log.value().find(key);
     result.values.push_back(values != nullptr ? *values : MetricValues{});
+    result.interrupted = result.interrupted || values == nullptr;
   }
-  result.interrupted = count > 0 && options.stop && options.stop();
   return result;
 }
 

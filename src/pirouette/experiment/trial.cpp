@@ -5,6 +5,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "pirouette/config/path_file.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/plant.hpp"
@@ -31,18 +32,29 @@ constexpr double kStandDownTime = 1.0;      // s
 constexpr double kTimePerStillTurn = 10.0;  // s
 constexpr double kProgressPeriod = 0.1;     // s, simulated
 
+/// What the robot is told to do.
+struct Motion {
+  MotionCommand command;
+  std::optional<Path> path;  ///< of run.path, in the file's own frame
+};
+
+double recorded_time(const RunConfig& run, const Motion& motion) {
+  if (motion.path) {
+    const double laps = motion.path->closed() ? run.laps : 1.0;
+    return laps * motion.path->length() / motion.command.v_H.norm();
+  }
+  const double yaw_rate = std::abs(run.rate);
+  return run.turns * (yaw_rate > 0.0 ? 2.0 * kPi / yaw_rate : kTimePerStillTurn);
+}
+
 /// When what happens, in control ticks.
 struct Schedule {
-  explicit Schedule(const Config& config)
+  Schedule(const Config& config, const Motion& motion)
       : rate(config.control.rate),
         command(ticks(config.gait.stand_time)),
         record(command + ticks(config.run.settle_time)),
-        end(record + ticks(recorded_time(config))) {}
+        end(record + ticks(recorded_time(config.run, motion))) {}
 
-  static double recorded_time(const Config& config) {
-    const double yaw_rate = std::abs(config.run.rate);
-    return config.run.turns * (yaw_rate > 0.0 ? 2.0 * kPi / yaw_rate : kTimePerStillTurn);
-  }
   std::int64_t ticks(double seconds) const { return std::llround(seconds * rate); }
   double seconds(std::int64_t tick) const { return static_cast<double>(tick) / rate; }
 
@@ -57,16 +69,40 @@ bool has_fixed_point(const RunConfig& run) {
   return run.fixed_point || run.start_offset != std::array{0.0, 0.0} || run.start_yaw_deg != 0.0;
 }
 
-MotionCommand motion_command(const RunConfig& run) {
-  MotionCommand command;
+Result<Motion> load_motion(const RunConfig& run) {
+  Motion motion;
+  MotionCommand& command = motion.command;
   command.walk = true;
-  command.v_H = Vec2(run.velocity[0], run.velocity[1]);
-  command.yaw_rate = run.rate;
   if (has_fixed_point(run)) {
     command.point = Vec2(run.point[0], run.point[1]);
     command.heading = 0.0;
   }
-  return command;
+  if (run.path.empty()) {
+    command.v_H = Vec2(run.velocity[0], run.velocity[1]);
+    command.yaw_rate = run.rate;
+    return motion;
+  }
+  const Result<std::filesystem::path> name = resolve_path(run);
+  if (!name) return name.errors();
+  const Result<PathFile> file = load_path_file(name.value());
+  if (!file) return file.errors();
+  const double speed = run.path_speed > 0.0 ? run.path_speed : file.value().speed;
+  command.v_H = rot2(file.value().travel_direction) * Vec2(speed, 0.0);
+  command.hold_heading = file.value().hold_heading;
+  motion.path = Path::spline(file.value().points, file.value().closed);
+  return motion;
+}
+
+/// Where the CoM should go in the world when the command comes at `p_WG` and `yaw`; absent: a spin.
+std::optional<Path> commanded_path(const Motion& motion, const Vec2& p_WG, double yaw) {
+  const MotionCommand& command = motion.command;
+  const double speed = command.v_H.norm();
+  if (speed == 0.0) return std::nullopt;
+  const double heading = yaw + std::atan2(command.v_H.y(), command.v_H.x());
+  if (!motion.path) return Path::arc(p_WG, heading, command.yaw_rate / speed);
+  std::optional<Path> path = motion.path;
+  path->start_at(p_WG, heading);
+  return path;
 }
 
 bool has_fallen(const PlantTruth& truth) {
@@ -80,6 +116,7 @@ bool has_fallen(const PlantTruth& truth) {
 
 RunContext describe_run(const Config& config, const CommandedMotion& commanded) {
   RunContext c;
+  c.path = config.run.path;
   c.robot = config.robot;
   c.terrain = config.plant.terrain;
   c.controller = config.controller;
@@ -90,7 +127,7 @@ RunContext describe_run(const Config& config, const CommandedMotion& commanded) 
   c.foot_model = enum_name(config.foot.model);
   c.com_planner = enum_name(config.com.planner);
   c.duty = config.gait.duty;
-  c.period = config.gait.period;
+  c.period = config.gait.period_at(config.run.rate);
   c.torsional_friction = config.plant.torsional_friction;
   c.friction = config.plant.friction;
   c.seed = config.run.seed;
@@ -108,6 +145,7 @@ RunContext describe_run(const Config& config, const CommandedMotion& commanded) 
 
 /// What a trial needs besides its config.
 struct Setup {
+  Motion motion;
   Plant plant;
   SpinController controller;
 };
@@ -115,12 +153,14 @@ struct Setup {
 Result<Setup> build(const Config& config) {
   const Result<std::string> mjcf = resolve_robot(config);
   if (!mjcf) return mjcf.errors();
+  Result<Motion> motion = load_motion(config.run);
+  if (!motion) return motion.errors();
   Result<SpinController> controller = SpinController::create(config, mjcf.value());
   const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
   Result<Plant> plant =
       Plant::create(config, mjcf.value(), start, radians(config.run.start_yaw_deg));
   if (controller && plant) {
-    return Setup{std::move(plant).value(), std::move(controller).value()};
+    return Setup{std::move(motion).value(), std::move(plant).value(), std::move(controller).value()};
   }
   // Both read the robot's file: what is wrong with it is said once.
   Errors errors = controller ? Errors{} : controller.errors();
@@ -136,13 +176,16 @@ class Trial {
   Trial(const Config& config, const TrialOptions& options, Setup setup)
       : config_(config),
         options_(options),
-        schedule_(config),
+        motion_(std::move(setup.motion)),
+        schedule_(config, motion_),
         plant_(std::move(setup.plant)),
-        controller_(std::move(setup.controller)),
-        motion_(motion_command(config.run)) {
+        controller_(std::move(setup.controller)) {
     const BaseTruth& start = plant_.truth().base;
     controller_.reset({start.p_WB, start.R_WB});
-    commanded_ = {motion_.point.value_or(Vec2::Zero()), motion_.v_H, motion_.yaw_rate};
+    controller_.follow(motion_.path);
+    const MotionCommand& command = motion_.command;
+    commanded_ = {command.point.value_or(Vec2::Zero()), command.v_H, command.yaw_rate,
+                  command.hold_heading, std::nullopt};
     yaw_.reset(rpy_from_rotation(start.R_WB).yaw);
   }
 
@@ -156,7 +199,7 @@ class Trial {
       }
       yaw_.update(rpy_from_rotation(truth.base.R_WB).yaw);
       if (tick_ == schedule_.command) begin_motion(truth);
-      const JointCommand& command = tick(tick_ < schedule_.command ? MotionCommand{} : motion_);
+      const JointCommand& command = tick(tick_ < schedule_.command ? MotionCommand{} : motion_.command);
       log(truth);
       if (!report(truth)) return {.metrics = {}, .interrupted = true};
       if (tick_ < schedule_.end) plant_.advance(command);
@@ -166,8 +209,11 @@ class Trial {
 
  private:
   void begin_motion(const PlantTruth& truth) {
-    if (!motion_.point) commanded_.point = truth.p_WG.head<2>();
+    const MotionCommand& command = motion_.command;
+    if (!command.point) commanded_.point = truth.p_WG.head<2>();
     command_yaw_ = yaw_.value();
+    commanded_.path =
+        commanded_path(motion_, commanded_.point, command.heading.value_or(command_yaw_));
   }
 
   const JointCommand& tick(const MotionCommand& motion) {
@@ -188,7 +234,9 @@ class Trial {
 
   void log(const PlantTruth& truth) {
     const TickTrace& trace = controller_.trace();
-    if (tick_ >= schedule_.record) record_.add(truth, yaw_.value(), trace.state);
+    if (tick_ >= schedule_.record) {
+      record_.add(truth, yaw_.value(), trace.state, trace.path.arc_length);
+    }
     constexpr double kRounding = 1e-9;
     const double row_time = static_cast<double>(rows_) / config_.run.trace_rate;
     if (options_.trace != nullptr && schedule_.seconds(tick_) >= row_time - kRounding) {
@@ -205,7 +253,7 @@ class Trial {
     progress.duration = schedule_.seconds(schedule_.end);
     progress.real_time_factor = progress.time / seconds_since(start_);
     if (tick_ >= schedule_.command) {
-      const double direction = motion_.yaw_rate < 0.0 ? -1.0 : 1.0;
+      const double direction = motion_.command.yaw_rate < 0.0 ? -1.0 : 1.0;
       progress.turns = direction * (yaw_.value() - command_yaw_) / (2.0 * kPi);
       progress.distance_to_point = (truth.p_WG.head<2>() - commanded_.point).norm();
     }
@@ -228,10 +276,10 @@ class Trial {
 
   const Config& config_;
   const TrialOptions& options_;
+  Motion motion_;
   Schedule schedule_;
   Plant plant_;
   SpinController controller_;
-  MotionCommand motion_;
   CommandedMotion commanded_;
   YawUnwrapper yaw_;
   double command_yaw_ = 0.0;
@@ -250,7 +298,8 @@ const char* version() { return PIROUETTE_VERSION; }
 const char* commit() { return PIROUETTE_COMMIT; }
 
 double trial_duration(const Config& config) {
-  const Schedule schedule(config);
+  const Result<Motion> motion = load_motion(config.run);
+  const Schedule schedule(config, motion ? motion.value() : Motion{});
   return schedule.seconds(schedule.end);
 }
 

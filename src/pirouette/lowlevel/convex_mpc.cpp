@@ -25,14 +25,19 @@ ConvexMpc::ConvexMpc(const MpcConfig& config, double mass, const Mat3& inertia_B
     : config_(config),
       mass_(mass),
       inertia_B_(inertia_B),
-      solver_(3, kPyramidRows, config.horizon * static_cast<int>(kLegCount), config.max_iterations) {
+      solver_(3, kPyramidRows, std::min(config.horizon * static_cast<int>(kLegCount), kMaxForces),
+              config.max_iterations) {
   problem_ = &solver_.prepare(1);
 }
 
-int ConvexMpc::collect_variables(const MpcInput& in) noexcept {
+void ConvexMpc::collect_variables(const MpcInput& in) noexcept {
   variable_count_ = 0;
+  steps_ = 0;
   for (int j = 0; j < config_.horizon; ++j) {
     const MpcStep& step = in.steps[static_cast<size_t>(j)];
+    const auto forces = static_cast<int>(std::count(step.stance.begin(), step.stance.end(), true));
+    if (variable_count_ + forces > kMaxForces) return;
+    steps_ = j + 1;
     const Mat3 R_WB = rotation_from_rpy(step.rpy_mid);
     const Mat3 inverse_inertia_W = R_WB * inertia_B_.inverse() * R_WB.transpose();
     for (const Leg leg : kLegs) {
@@ -43,12 +48,11 @@ int ConvexMpc::collect_variables(const MpcInput& in) noexcept {
       v.W = in.dt * inverse_inertia_W * skew(step.p_WC[leg] - step.p_WG_mid);
     }
   }
-  return variable_count_;
 }
 
 void ConvexMpc::sum_rotations(const MpcInput& in) noexcept {
   S_[0].setZero();
-  for (int i = 0; i < config_.horizon; ++i) {
+  for (int i = 0; i < steps_; ++i) {
     const auto k = static_cast<size_t>(i);
     T_[k] = attitude_rate_map(in.steps[k].rpy_mid);
     S_[k + 1] = S_[k] + in.dt * T_[k];
@@ -57,7 +61,7 @@ void ConvexMpc::sum_rotations(const MpcInput& in) noexcept {
 }
 
 void ConvexMpc::fill_hessian(double dt) noexcept {
-  const int N = config_.horizon;
+  const int N = steps_;
   const Vec3 weight_rpy = to_vec(config_.weight_rpy);
   const Vec3 weight_p = to_vec(config_.weight_position);
   const Vec3 weight_w = to_vec(config_.weight_angular_velocity);
@@ -109,7 +113,7 @@ void ConvexMpc::fill_hessian(double dt) noexcept {
 }
 
 void ConvexMpc::fill_gradient(const MpcInput& in) noexcept {
-  const int N = config_.horizon;
+  const int N = steps_;
   const double dt = in.dt;
   const Vec3 weight_rpy = to_vec(config_.weight_rpy);
   const Vec3 weight_p = to_vec(config_.weight_position);
@@ -161,7 +165,8 @@ void ConvexMpc::fill_constraints(const Vec3& n_W) noexcept {
 
 ContactForces ConvexMpc::update(const MpcInput& in) noexcept {
   ContactForces out;
-  if (collect_variables(in) == 0) return out;
+  collect_variables(in);
+  if (variable_count_ == 0) return out;
   problem_ = &solver_.prepare(variable_count_);
   sum_rotations(in);
   fill_hessian(in.dt);

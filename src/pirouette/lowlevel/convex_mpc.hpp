@@ -13,6 +13,9 @@
 namespace pirouette {
 
 inline constexpr int kMaxHorizon = 24;
+/// Forces planned at once; see QpSolver::kMaxVariables. A trot of duty 0.6 has 40 in 16 steps; four feet that
+/// stand have them in 10.
+inline constexpr int kMaxForces = QpSolver::kMaxVariables / 3;
 
 /// State of the single rigid body: attitude (rad, yaw unwrapped), CoM position, angular velocity and CoM
 /// velocity, all in world axes.
@@ -43,7 +46,8 @@ struct MpcInput {
 ///
 /// The linear dynamics (equations.md section 8) are integrated exactly over each step with forces held. Since
 /// A^3 = 0, the response of a state to a force is a polynomial in the number of steps between them, so each
-/// 3x3 block of the Hessian is built from suffix sums in constant time. Swing legs have no variables.
+/// 3x3 block of the Hessian is built from suffix sums in constant time. Swing legs have no variables. The
+/// prediction ends at the horizon or before the step that would exceed kMaxForces.
 class ConvexMpc {
  public:
   /// `mass` in kg; `inertia_B` in kg m^2 about the CoM, trunk axes.
@@ -62,7 +66,7 @@ class ConvexMpc {
     Mat3 W;  ///< rad/s per N: change of angular velocity by this force over one step
   };
 
-  int collect_variables(const MpcInput& in) noexcept;
+  void collect_variables(const MpcInput& in) noexcept;
   void sum_rotations(const MpcInput& in) noexcept;
   void fill_hessian(double dt) noexcept;
   void fill_gradient(const MpcInput& in) noexcept;
@@ -74,8 +78,9 @@ class ConvexMpc {
   QpSolver solver_;
   QpSolver::Problem* problem_ = nullptr;
 
-  std::array<Variable, kMaxHorizon * kLegCount> variables_;
+  std::array<Variable, kMaxForces> variables_;
   int variable_count_ = 0;
+  int steps_ = 0;  ///< of the prediction
   std::array<Mat3, kMaxHorizon> T_;       ///< attitude rate per angular velocity, during step i (E24)
   std::array<Mat3, kMaxHorizon + 1> S_;   ///< sum of dt T_i over i < k
   std::array<Mat3, kMaxHorizon> C_;       ///< part of S_k that a force of step j does not act through

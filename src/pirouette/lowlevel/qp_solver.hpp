@@ -29,8 +29,12 @@ class QpSolver {
     Eigen::VectorXd x;      ///< n, the solution
   };
 
+  /// Up to here the active-set library works without the heap. The triangular inverse that it begins with takes
+  /// n^2 numbers of scratch memory, from the stack while they are at most 128 KiB: n <= 128.
+  static constexpr int kMaxVariables = 126;
+
   /// Sizes the workspaces for every problem of `unit * k` variables, k = 1 .. `max_units`, with
-  /// `rows_per_unit * k` constraints.
+  /// `rows_per_unit * k` constraints; at most kMaxVariables.
   QpSolver(int unit, int rows_per_unit, int max_units, int max_iterations);
   QpSolver(QpSolver&&) noexcept;
   QpSolver& operator=(QpSolver&&) noexcept;

@@ -12,6 +12,7 @@ struct PathPoint {
   double yaw = 0.0;           ///< rad, unwrapped
   Vec2 v_H = Vec2::Zero();    ///< m/s, feed-forward velocity in the reference's heading axes
   double yaw_rate = 0.0;      ///< rad/s
+  double arc_length = 0.0;    ///< m, way along the path since its start
 };
 
 /// The tracker's velocity command, in the robot's own heading axes.

@@ -15,6 +15,9 @@ struct MotionCommand {
   double yaw_rate = 0.0;        ///< rad/s
   std::optional<Vec2> point;    ///< m, world: where the reference starts; absent: where the CoM stands when walking begins
   std::optional<double> heading;  ///< rad, world: heading of the reference at its start; absent: the robot's own
+  /// On a path (SpinController::follow) the length of v_H is the speed along it and the direction of v_H that of the
+  /// path in the body; yaw_rate has no say. The body turns with the path, or else keeps its heading.
+  bool hold_heading = false;
 };
 
 }  // namespace pirouette

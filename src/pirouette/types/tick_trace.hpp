@@ -88,6 +88,7 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit("path_position", "m", "path reference of the CoM", t.path.p_WG);
   visit("path_yaw", "rad", "path reference, unwrapped", t.path.yaw);
   visit("path_yaw_rate", "rad/s", "path reference", t.path.yaw_rate);
+  visit("path_arc_length", "m", "path reference, from the path's start", t.path.arc_length);
   visit("twist_velocity_H", "m/s", "tracker's command, heading axes", t.twist.v_H);
   visit("twist_yaw_rate", "rad/s", "tracker's command", t.twist.yaw_rate);
   visit("tracker_integral_H", "m/s", "body-frame integrator", t.integral_H);

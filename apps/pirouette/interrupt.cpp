@@ -1,0 +1,23 @@
+#include "interrupt.hpp"
+
+#include <atomic>
+#include <csignal>
+
+namespace pirouette::app {
+namespace {
+
+std::atomic<int> received = 0;
+static_assert(std::atomic<int>::is_always_lock_free, "set by a signal handler");
+
+extern "C" void remember_signal(int signal) { received = signal; }
+
+}  // namespace
+
+void watch_interrupts() {
+  std::signal(SIGINT, remember_signal);
+  std::signal(SIGTERM, remember_signal);
+}
+
+int interrupt_signal() { return received; }
+
+}  // namespace pirouette::app

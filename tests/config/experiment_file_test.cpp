@@ -1,0 +1,183 @@
+// Experiment files: what they expand to, and what is said when they are wrong.
+#include "pirouette/config/experiment_file.hpp"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace pirouette {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kGood = R"(title = "A small experiment"
+seeds = [3, 5]
+ladder = ["baseline", "ours"]
+[common]
+run.turns = 1
+gait.period = 0.4
+[[rows]]
+label = "baseline"
+controller = "mit"
+paper = "MIT"
+[rows.set]
+gait.period = 0.5
+[[rows]]
+label = "ours"
+controller = "pirouette"
+[[axes]]
+key = "plant.torsional_friction"
+values = [0.005, 0.02]
+[[axes]]
+key = "profile"
+values = ["nominal", "realistic"]
+[trace]
+profile = "nominal"
+plant.torsional_friction = 0.02
+[[columns]]
+metric = "com.radius_mean_mm"
+title = "radius, mm"
+[[paper]]
+row = "MIT"
+profile = "nominal"
+[paper.metrics]
+com.radius_mean_mm = 27.9
+[[bounds]]
+row = "ours"
+metric = "com.radius_mean_mm"
+max = 5.0
+)";
+
+class ExperimentFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    file_ = fs::path(::testing::TempDir()) / ("pirouette_" + std::string(info->name()) + ".toml");
+  }
+  void TearDown() override { fs::remove(file_); }
+
+  Result<Experiment> load(const std::string& text, const ExperimentChanges& changes = {}) {
+    std::ofstream(file_) << text;
+    return load_experiment(file_, changes);
+  }
+
+  /// The good experiment with `from` replaced by `to`.
+  static std::string good_but(const std::string& from, const std::string& to) {
+    std::string text = kGood;
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, text.npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+
+  /// The errors of the good experiment with `from` replaced by `to`, "LINE: key: message" each.
+  std::string errors_of(const std::string& from, const std::string& to) {
+    const Result<Experiment> experiment = load(good_but(from, to));
+    if (experiment) return "no error";
+    std::string text;
+    for (const Error& error : experiment.errors()) {
+      std::string line = error.to_string();
+      if (line.starts_with(file_.string() + ":")) line.erase(0, file_.string().size() + 1);
+      text += (text.empty() ? "" : "\n") + line;
+    }
+    return text;
+  }
+
+  fs::path file_;
+};
+
+TEST_F(ExperimentFiles, ExpandRowsThenAxesThenSeeds) {
+  const Result<Experiment> loaded = load(kGood);
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  const Experiment& experiment = loaded.value();
+  ASSERT_EQ(experiment.trials.size(), 2u * 2u * 2u * 2u);
+  const ExperimentTrial& second = experiment.trials[1];
+  EXPECT_EQ(second.row, 0u);
+  EXPECT_EQ(second.config.run.seed, 5);
+  EXPECT_EQ(experiment.trials[2].config.profile, "realistic");
+  EXPECT_EQ(experiment.trials[4].config.plant.torsional_friction, 0.02);
+  EXPECT_EQ(experiment.trials[8].config.controller, "pirouette");
+}
+
+TEST_F(ExperimentFiles, RowsOverrideWhatIsCommonAndAxesOverrideRows) {
+  const Result<Experiment> loaded =
+      load(good_but("gait.period = 0.5", "gait.period = 0.5\nplant.torsional_friction = 0.1"));
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  EXPECT_EQ(loaded.value().trials.front().config.gait.period, 0.5);
+  EXPECT_EQ(loaded.value().trials.front().config.plant.torsional_friction, 0.005);
+  EXPECT_EQ(loaded.value().trials.back().config.gait.period, 0.4);
+}
+
+TEST_F(ExperimentFiles, KeepTheTraceOfTheFirstSeedWhereAsked) {
+  const Result<Experiment> loaded = load(kGood);
+  ASSERT_TRUE(loaded);
+  for (const ExperimentTrial& trial : loaded.value().trials) {
+    const bool wanted = trial.config.profile == "nominal" &&
+                        trial.config.plant.torsional_friction == 0.02 && trial.seed == 3;
+    EXPECT_EQ(trial.keep_trace, wanted);
+  }
+}
+
+TEST_F(ExperimentFiles, HoldPrintedFiguresAndBounds) {
+  const Result<Experiment> loaded = load(kGood);
+  ASSERT_TRUE(loaded);
+  ASSERT_EQ(loaded.value().printed.size(), 1u);
+  EXPECT_EQ(loaded.value().printed.front().metrics.at("com.radius_mean_mm"), 27.9);
+  ASSERT_EQ(loaded.value().bounds.size(), 1u);
+  EXPECT_EQ(loaded.value().bounds.front().max, 5.0);
+  EXPECT_FALSE(loaded.value().bounds.front().min);
+}
+
+TEST_F(ExperimentFiles, LetTheCommandLineChangeSeedsAndTurns) {
+  const Result<Experiment> loaded = load(kGood, {.seeds = 3, .turns = 0.5});
+  ASSERT_TRUE(loaded);
+  EXPECT_EQ(loaded.value().seeds, (std::vector<std::int64_t>{1, 2, 3}));
+  EXPECT_EQ(loaded.value().trials.front().config.run.turns, 0.5);
+  const Result<Experiment> wrong = load(kGood, {.seeds = 0, .turns = -1.0});
+  ASSERT_FALSE(wrong);
+  ASSERT_EQ(wrong.errors().size(), 2u);
+  EXPECT_TRUE(wrong.errors()[0].to_string().starts_with("--seeds: given 0"));
+  EXPECT_TRUE(wrong.errors()[1].to_string().starts_with("--turns: given -1"));
+}
+
+TEST_F(ExperimentFiles, NameTheLineOfAWrongParameterOnce) {
+  EXPECT_EQ(errors_of("gait.period = 0.4", "gait.perid = 0.4"),
+            "6: gait.perid: unknown key; did you mean gait.period?");
+  EXPECT_EQ(errors_of("gait.period = 0.5", "gait.period = 9"),
+            "12: gait.period: given 9; allowed: 0.15 to 2 s");
+  EXPECT_EQ(errors_of("0.02]", "\"much\"]").substr(0, 41), "18: plant.torsional_friction: given \"much\"");
+  EXPECT_EQ(errors_of("\"realistic\"]", "\"realistc\"]").substr(0, 29), "21: profile: given \"realistc\"");
+}
+
+TEST_F(ExperimentFiles, NameTheLineOfAWrongController) {
+  const std::string text = errors_of("controller = \"mit\"", "controller = \"mti\"");
+  EXPECT_EQ(text.substr(0, 33), "7: controller: given \"mti\"; allow") << text;
+}
+
+TEST_F(ExperimentFiles, NameWhatIsWrongWithTheExperimentItself) {
+  EXPECT_EQ(errors_of("seeds = [3, 5]", "seeds = [3, 3]").substr(0, 22), "2: seeds: given [3, 3]");
+  EXPECT_EQ(errors_of("seeds = [3, 5]", "sedes = [3, 5]"),
+            "2: sedes: unknown key; did you mean seeds?");
+  EXPECT_EQ(errors_of("label = \"ours\"\n", ""),
+            "3: ladder: given \"ours\"; allowed: \"baseline\", \"\"\n"
+            "12: rows.label: missing: a text in quotes\n"
+            "32: bounds.row: given \"ours\"; allowed: \"baseline\", \"\"");
+  EXPECT_EQ(errors_of("row = \"MIT\"", "row = \"ETH\""),
+            "28: paper.row: no row has paper = \"ETH\"");
+  EXPECT_EQ(errors_of("max = 5.0", ""), "32: bounds: needs min or max");
+  EXPECT_EQ(errors_of("plant.torsional_friction = 0.02", "plant.torsional_friction = 0.03"),
+            "24: trace.plant.torsional_friction: given 0.03; allowed: a value of an axis");
+}
+
+TEST(Experiments, OfTheProjectAreValid) {
+  const std::vector<std::string> names = known_experiments();
+  EXPECT_GE(names.size(), 4u);
+  for (const std::string& name : names) {
+    const Result<Experiment> experiment = load_experiment(experiment_path(name));
+    EXPECT_TRUE(experiment) << experiment.errors().front().to_string();
+  }
+}
+
+}  // namespace
+}  // namespace pirouette

@@ -1,0 +1,178 @@
+// Sweeps: parallel, interrupted, resumed, and always the same table.
+#include "pirouette/experiment/sweep.hpp"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include "pirouette/config/toml.hpp"
+#include "pirouette/experiment/report.hpp"
+
+namespace pirouette {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kTiny = R"(seeds = [1, 2]
+ladder = ["asc", "ours"]
+[common]
+run.turns = 0.02
+run.settle_time = 0.1
+gait.stand_time = 0.2
+[[rows]]
+label = "asc"
+controller = "asc"
+paper = "ASC"
+[[rows]]
+label = "ours"
+controller = "pirouette"
+[[axes]]
+key = "plant.friction"
+values = [0.6, 0.8]
+[trace]
+plant.friction = 0.8
+[[columns]]
+metric = "com.radius_mean_mm"
+title = "radius, mm"
+[[paper]]
+row = "ASC"
+profile = "nominal"
+[paper.metrics]
+com.radius_mean_mm = 11.2
+)";
+
+std::string read(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path, std::ios::binary).rdbuf();
+  return text.str();
+}
+
+class Sweeps : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = fs::path(::testing::TempDir()) / ("pirouette_sweep_" + std::string(info->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Experiment load(const std::string& text = kTiny) {
+    const fs::path file = folder_ / "tiny.toml";
+    std::ofstream(file) << text;
+    Result<Experiment> experiment = load_experiment(file);
+    if (experiment) return std::move(experiment).value();
+    ADD_FAILURE() << experiment.errors().front().to_string();
+    return {};
+  }
+
+  SweepOptions options(const std::string& name, unsigned jobs) {
+    SweepOptions options;
+    options.folder = folder_ / name;
+    options.jobs = jobs;
+    return options;
+  }
+
+  /// All that the sweep says.
+  static std::string tables(const Experiment& experiment, const SweepOptions& options) {
+    const Result<SweepResult> result = run_sweep(experiment, options);
+    if (!result) {
+      ADD_FAILURE() << result.errors().front().to_string();
+      return "";
+    }
+    const Report report(experiment, result.value());
+    return report.trials_csv() + report.csv() + report.markdown() + report.json();
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(Sweeps, GiveTheSameTableForAnyNumberOfJobs) {
+  const Experiment experiment = load();
+  const std::string one = tables(experiment, options("one", 1));
+  EXPECT_EQ(one, tables(experiment, options("two", 2)));
+  EXPECT_NE(one.find("ours"), one.npos);
+}
+
+TEST_F(Sweeps, GoOnAfterAnInterruptionInTheMiddleOfALine) {
+  const Experiment experiment = load();
+  const std::string whole = tables(experiment, options("whole", 2));
+  const std::string log = read(folder_ / "whole" / kResultsFile);
+  fs::create_directories(folder_ / "part");
+  std::ofstream(folder_ / "part" / kResultsFile) << log.substr(0, log.size() / 2);
+
+  SweepOptions resumed = options("part", 2);
+  SweepProgress first, last;
+  resumed.progress = [&](const SweepProgress& progress) {
+    if (first.total == 0) first = progress;
+    last = progress;
+  };
+  fs::copy(folder_ / "whole" / kTracesFolder, folder_ / "part" / kTracesFolder);
+  EXPECT_EQ(whole, tables(experiment, resumed));
+  EXPECT_GT(first.resumed, 0u);
+  EXPECT_LT(first.resumed, first.total);
+  EXPECT_EQ(last.done, last.total);
+  EXPECT_EQ(whole, tables(experiment, resumed));
+  EXPECT_EQ(last.resumed, last.total);
+}
+
+TEST_F(Sweeps, RunATrialAgainWhoseTraceIsLost) {
+  const Experiment experiment = load();
+  const std::string whole = tables(experiment, options("run", 2));
+  const std::string key = trial_key(experiment.trials[2].config);
+  ASSERT_TRUE(experiment.trials[2].keep_trace);
+  const std::string trace = read(trace_path(folder_ / "run", key));
+  ASSERT_FALSE(trace.empty());
+  fs::remove(trace_path(folder_ / "run", key));
+  EXPECT_EQ(whole, tables(experiment, options("run", 2)));
+  EXPECT_EQ(trace, read(trace_path(folder_ / "run", key)));
+}
+
+TEST_F(Sweeps, KeepWhatIsFinishedWhenStopped) {
+  const Experiment experiment = load();
+  SweepOptions stopped = options("run", 1);
+  std::atomic<std::size_t> done = 0;
+  stopped.progress = [&](const SweepProgress& progress) { done = progress.done; };
+  stopped.stop = [&] { return done >= 3; };
+  const Result<SweepResult> result = run_sweep(experiment, stopped);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result.value().interrupted);
+  EXPECT_EQ(tables(experiment, options("run", 2)), tables(experiment, options("whole", 2)));
+}
+
+TEST_F(Sweeps, RefuseABadTerrainBeforeAnythingRuns) {
+  std::string text = kTiny;
+  text.replace(text.find("key = \"plant.friction\""), 38 + 9,
+               "key = \"plant.terrain\"\nvalues = [\"flat\", \"moon\"]");
+  text.replace(text.find("plant.friction = 0.8"), 20, "plant.terrain = \"flat\"");
+  const Experiment experiment = load(text);
+  const Result<SweepResult> result = run_sweep(experiment, options("run", 1));
+  ASSERT_FALSE(result);
+  ASSERT_EQ(result.errors().size(), 1u);
+  EXPECT_NE(result.errors().front().to_string().find("moon"), std::string::npos);
+  EXPECT_FALSE(fs::exists(folder_ / "run"));
+}
+
+TEST_F(Sweeps, RefuseAMetricThatThereIsNot) {
+  std::string text = kTiny;
+  text.replace(text.find("metric = \"com.radius_mean_mm\""), 29, "metric = \"com.radius_men_mm\"");
+  const Errors errors = check_sweep(load(text));
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_NE(errors.front().to_string().find("did you mean com.radius_mean_mm?"), std::string::npos);
+}
+
+TEST(TrialKey, StandsForTheConfiguration) {
+  Config config = load_config().value();
+  const std::string key = trial_key(config);
+  EXPECT_EQ(key.size(), 16u);
+  EXPECT_EQ(key, trial_key(load_config().value()));
+  config.run.seed += 1;
+  EXPECT_NE(key, trial_key(config));
+}
+
+}  // namespace
+}  // namespace pirouette
