@@ -94,8 +94,7 @@ void ConfigOptions::add_turn(CLI::App& command) {
 }
 
 CLI::Option* ConfigOptions::add_shortcut(CLI::App& command, Shortcut shortcut,
-                                         const std::string& placeholder,
-                                         const std::string& help) {
+                                         const std::string& placeholder, const std::string& help) {
   Shortcut& kept = shortcuts_.emplace_back(std::move(shortcut));
   return command.add_option(kept.option, kept.text, help)->type_name(placeholder);
 }
@@ -132,8 +131,7 @@ std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
       {"--radius", radius_}, {"--speed", speed_}, {"--heading-offset-deg", heading_offset_deg_}};
   for (const auto& [option, number] : numbers) {
     if (number && !std::isfinite(*number)) {
-      errors.push_back(
-          {option, 0, "", "given " + as_toml(*number) + "; allowed: a finite number"});
+      errors.push_back({option, 0, "", "given " + as_toml(*number) + "; allowed: a finite number"});
     }
   }
   for (const Shortcut& s : shortcuts_) {
@@ -167,15 +165,16 @@ Result<Config> ConfigOptions::load_with(const std::vector<std::string>& override
 
 Errors ConfigOptions::in_typed_words(Errors errors) const {
   for (Error& error : errors) {
-    if (error.file == "--robot" || error.file == "--controller" || error.file == "--profile") error.key.clear();
+    if (error.file == "--robot" || error.file == "--controller" || error.file == "--profile")
+      error.key.clear();
     if (!error.file.empty() && error.file != "--set") continue;
     for (const Shortcut& s : shortcuts_) {
       if (s.text && s.key == error.key) error = {s.option, 0, "", error.message};
     }
     if ((radius_ || speed_) && error.key == "run.velocity") {
       error = {radius_ ? "--radius" : "--speed", 0, "",
-               "given " + as_toml(radius_.value_or(speed_.value_or(0.0))) + "; run.velocity: " +
-                   error.message};
+               "given " + as_toml(radius_.value_or(speed_.value_or(0.0))) +
+                   "; run.velocity: " + error.message};
     }
     if (speed_ && error.key == "run.path_speed") error = {"--speed", 0, "", error.message};
   }

@@ -43,7 +43,8 @@ void draw(const std::string& folder) {
 }  // namespace
 
 ReproduceCommand::ReproduceCommand(CLI::App& app) {
-  command_ = app.add_subcommand("reproduce", "Repeat the paper's experiments, its numbers beside ours");
+  command_ =
+      app.add_subcommand("reproduce", "Repeat the paper's experiments, its numbers beside ours");
   command_->add_option("FIGURE", figure_, "all, or one of: " + joined(known_experiments()))
       ->required();
   runner_.add_options(*command_, "reports");

@@ -46,8 +46,7 @@ std::string shown_path(const std::filesystem::path& path) {
 }
 
 Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_progress) {
-  const bool about_a_point =
-      config.run.path.empty() && config.run.velocity == std::array{0.0, 0.0};
+  const bool about_a_point = config.run.path.empty() && config.run.velocity == std::array{0.0, 0.0};
   std::optional<ProgressBar> bar;
   if (show_progress) bar.emplace(about_a_point);
   TrialOptions options;
@@ -63,9 +62,10 @@ Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_p
 
 RunCommand::RunCommand(CLI::App& app, Kind kind, std::string command_line)
     : kind_(kind), command_line_(std::move(command_line)) {
-  command_ = kind == Kind::kSpin
-                 ? app.add_subcommand("spin", "Simulate a spin on the spot and measure it")
-                 : app.add_subcommand("turn", "Simulate a turn of any radius, or a path, and measure it");
+  command_ =
+      kind == Kind::kSpin
+          ? app.add_subcommand("spin", "Simulate a spin on the spot and measure it")
+          : app.add_subcommand("turn", "Simulate a turn of any radius, or a path, and measure it");
   config_options_.add_run(*command_);
   if (kind == Kind::kTurn) config_options_.add_turn(*command_);
   config_options_.add_common(*command_);

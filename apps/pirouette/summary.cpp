@@ -92,10 +92,10 @@ void add_motion(Table& table, const Metrics& m) {
                                        ", largest " + shown(com.distance_to_point_max_mm, "mm"));
   }
   if (m.path.cross_track_mean_mm) {
-    table.row("distance to path", "mean " + shown(m.path.cross_track_mean_mm, "mm") +
-                                      ", largest " + shown(m.path.cross_track_max_mm, "mm"));
-    table.row("along the path", "mean " + shown(m.path.along_track_mean_mm, "mm") +
-                                    " from where it is due");
+    table.row("distance to path", "mean " + shown(m.path.cross_track_mean_mm, "mm") + ", largest " +
+                                      shown(m.path.cross_track_max_mm, "mm"));
+    table.row("along the path",
+              "mean " + shown(m.path.along_track_mean_mm, "mm") + " from where it is due");
   }
   table.row("radius", "mean " + shown(com.radius_mean_mm, "mm") + ", largest " +
                           shown(com.radius_max_mm, "mm") + ", variance " +

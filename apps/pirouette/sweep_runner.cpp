@@ -76,11 +76,12 @@ void SweepRunner::add_options(CLI::App& command, const std::string& default_fold
       ->type_name("N");
   command.add_option("--turns", changes_.turns, "Turns of every trial instead of the file's")
       ->type_name("N");
-  command.add_option("--out", out_,
-                     "Folder of results, tables and traces; what is finished there is kept [" +
-                         default_folder + "]")
+  command
+      .add_option("--out", out_,
+                  "Folder of results, tables and traces; what is finished there is kept [" +
+                      default_folder + "]")
       ->type_name("DIR");
-  command.add_flag("--fresh", fresh_, "Run everything again");
+  command.add_flag("--fresh", fresh_, "Run everything again, as after a change of the code");
 }
 
 Errors SweepRunner::check() const {

@@ -51,9 +51,14 @@ def scene(robot_file: Path) -> mujoco.MjModel:
     material = spec.add_material(name="floor", texrepeat=[8, 8], texuniform=True)
     material.textures[mujoco.mjtTextureRole.mjTEXROLE_RGB] = "floor"
     spec.worldbody.add_geom(
-        type=mujoco.mjtGeom.mjGEOM_PLANE, size=[3, 3, 0.1], material="floor", pos=[0, 0, 0]
+        type=mujoco.mjtGeom.mjGEOM_PLANE,
+        size=[3, 3, 0.1],
+        material="floor",
+        pos=[0, 0, 0],
     )
-    spec.worldbody.add_light(pos=[1.0, -1.0, 3.0], dir=[-0.3, 0.3, -1.0], castshadow=True)
+    spec.worldbody.add_light(
+        pos=[1.0, -1.0, 3.0], dir=[-0.3, 0.3, -1.0], castshadow=True
+    )
     return spec.compile()
 
 
@@ -86,19 +91,25 @@ def draw(run: Path, out: Path) -> None:
     metrics = json.loads((run / "metrics.json").read_text())
     context = metrics["context"]
     robot = Path(context["robot"])
-    robot_file = robot if robot.suffix == ".xml" else ROOT / f"robots/{robot}/{robot}.xml"
+    robot_file = (
+        robot if robot.suffix == ".xml" else ROOT / f"robots/{robot}/{robot}.xml"
+    )
 
     point = np.array([context["point_x"], context["point_y"]])
     recorded = trace["time"] > trace["time"][-1] - context["duration_s"] + 6.0
     com = MM * (trace["true_com_position"][recorded, :2] - point)
 
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), width_ratios=[1.25, 1.0])
+    figure, (left, right) = plt.subplots(
+        1, 2, figsize=(11, 4.6), width_ratios=[1.25, 1.0]
+    )
     left.imshow(render(scene(robot_file), trace[len(trace) // 2]))
     left.axis("off")
     right.plot(com[:, 0], com[:, 1], lw=0.7, color="#1f4e79", label="centre of mass")
     right.plot(0, 0, "+", color="#b3400f", ms=12, mew=2, label="commanded point")
     reach = max(5.0, 1.1 * np.abs(com).max())
-    right.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x, mm", ylabel="y, mm")
+    right.set(
+        xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x, mm", ylabel="y, mm"
+    )
     right.set_aspect("equal")
     right.grid(alpha=0.3)
     right.legend(loc="upper right", frameon=False)
@@ -113,12 +124,19 @@ def draw(run: Path, out: Path) -> None:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("run", type=Path, help="run folder, with trace.npy and metrics.json")
+    parser.add_argument(
+        "run", type=Path, help="run folder, with trace.npy and metrics.json"
+    )
     parser.add_argument("out", type=Path, help="picture to write, PNG")
     arguments = parser.parse_args()
-    missing = [n for n in ("trace.npy", "metrics.json") if not (arguments.run / n).is_file()]
+    missing = [
+        n for n in ("trace.npy", "metrics.json") if not (arguments.run / n).is_file()
+    ]
     if missing:
-        print(f"error: {arguments.run}: no run folder, {' and '.join(missing)} missing", file=sys.stderr)
+        print(
+            f"error: {arguments.run}: no run folder, {' and '.join(missing)} missing",
+            file=sys.stderr,
+        )
         return 2
     draw(arguments.run, arguments.out)
     return 0

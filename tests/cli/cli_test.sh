@@ -96,9 +96,9 @@ wrong '--radius: given inf' turn --radius inf
 wrong '--radius: missing; or give --speed, --path or --config' turn --rate 0.5
 wrong '--speed: given 9' turn --speed 9
 wrong '--speed: given -0.2' turn --path figure8 --speed -0.2
-wrong '--speed excludes --radius' turn --speed 0.2 --radius 0.5
+wrong '--radius excludes --speed' turn --speed 0.2 --radius 0.5
 wrong '--path excludes --radius' turn --path figure8 --radius 0.5
-wrong '--path excludes --rate' turn --path figure8 --rate 0.5
+wrong '--rate excludes --path' turn --path figure8 --rate 0.5
 wrong '--path excludes --heading-offset-deg' turn --path figure8 --heading-offset-deg 90
 wrong '--path: given "figure9"; allowed: figure8, square; did you mean figure8?' turn --path figure9
 wrong '--path: given "nowhere.toml": no such file' turn --path nowhere.toml

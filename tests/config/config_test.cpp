@@ -178,8 +178,8 @@ TEST_F(ConfigFiles, AProfileLiesBetweenTheControllerAndTheUsersFile) {
   EXPECT_EQ(config.value().plant.timestep, 5e-4);
   EXPECT_EQ(config.value().plant.friction, 0.4);
   EXPECT_EQ(config.value().plant.impratio, 20.0);
-  EXPECT_EQ(error_of("profile = 'ruff'\n"),
-            "my.toml:1: profile: given \"ruff\"; allowed: nominal, rough; did you mean rough?");
+  EXPECT_EQ(error_of("robot = 'bee'\nprofile = 'rogh'\n"),
+            "my.toml:2: profile: given \"rogh\"; allowed: nominal, rough; did you mean rough?");
 }
 
 TEST_F(ConfigFiles, AnOverlayMayNotChooseTheRobot) {

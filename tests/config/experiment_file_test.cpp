@@ -146,8 +146,10 @@ TEST_F(ExperimentFiles, NameTheLineOfAWrongParameterOnce) {
             "6: gait.perid: unknown key; did you mean gait.period?");
   EXPECT_EQ(errors_of("gait.period = 0.5", "gait.period = 9"),
             "12: gait.period: given 9; allowed: 0.15 to 2 s");
-  EXPECT_EQ(errors_of("0.02]", "\"much\"]").substr(0, 41), "18: plant.torsional_friction: given \"much\"");
-  EXPECT_EQ(errors_of("\"realistic\"]", "\"realistc\"]").substr(0, 29), "21: profile: given \"realistc\"");
+  EXPECT_EQ(errors_of("0.02]", "\"much\"]").substr(0, 42),
+            "18: plant.torsional_friction: given \"much\"");
+  EXPECT_EQ(errors_of("\"realistic\"]", "\"realistc\"]").substr(0, 29),
+            "21: profile: given \"realistc\"");
 }
 
 TEST_F(ExperimentFiles, NameTheLineOfAWrongController) {
@@ -161,11 +163,11 @@ TEST_F(ExperimentFiles, NameWhatIsWrongWithTheExperimentItself) {
             "2: sedes: unknown key; did you mean seeds?");
   EXPECT_EQ(errors_of("label = \"ours\"\n", ""),
             "3: ladder: given \"ours\"; allowed: \"baseline\", \"\"\n"
-            "12: rows.label: missing: a text in quotes\n"
+            "13: rows.label: missing: a text in quotes\n"
             "32: bounds.row: given \"ours\"; allowed: \"baseline\", \"\"");
   EXPECT_EQ(errors_of("row = \"MIT\"", "row = \"ETH\""),
             "28: paper.row: no row has paper = \"ETH\"");
-  EXPECT_EQ(errors_of("max = 5.0", ""), "32: bounds: needs min or max");
+  EXPECT_EQ(errors_of("max = 5.0", ""), "33: bounds: needs min or max");
   EXPECT_EQ(errors_of("plant.torsional_friction = 0.02", "plant.torsional_friction = 0.03"),
             "24: trace.plant.torsional_friction: given 0.03; allowed: a value of an axis");
 }

@@ -16,7 +16,8 @@ class PathFiles : public ::testing::Test {
  protected:
   void SetUp() override {
     const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    file_ = fs::path(::testing::TempDir()) / ("pirouette_path_" + std::string(info->name()) + ".toml");
+    file_ =
+        fs::path(::testing::TempDir()) / ("pirouette_path_" + std::string(info->name()) + ".toml");
   }
   void TearDown() override { fs::remove(file_); }
 
@@ -64,9 +65,10 @@ TEST_F(PathFiles, EachWrongValueIsNamedWithItsLineAndWhatIsAllowed) {
             "2: speed: given 5; allowed: 0.01 to 2 m/s\n");
   EXPECT_EQ(errors_of("points = [[0, 0], [1, 0]]\nclosed = 1"),
             "2: closed: given 1; allowed: true, false\n");
-  EXPECT_EQ(errors_of("points = [[0, 0], [1, 0]]\nheading = \"north\""),
-            "2: heading: given \"north\"; allowed: \"tangent\", \"fixed\", or the angle of the path "
-            "from the front, -180 to 180 deg\n");
+  EXPECT_EQ(
+      errors_of("points = [[0, 0], [1, 0]]\nheading = \"north\""),
+      "2: heading: given \"north\"; allowed: \"tangent\", \"fixed\", or the angle of the path "
+      "from the front, -180 to 180 deg\n");
   EXPECT_EQ(errors_of("points = [[0, 0], [1, 0]]\nspede = 0.2"),
             "2: spede: unknown key; did you mean speed?\n");
   EXPECT_EQ(errors_of("points = [\n[0, 0],\n[1, nan],\n[2]]"),

@@ -233,5 +233,27 @@ TEST(MetricsJson, SurvivesARobotPathThatIsNotUtf8) {
   EXPECT_TRUE(nlohmann::json::accept(to_json(m)));
 }
 
+TEST(Metrics, PathErrorsAreAcrossThePathAndAlongItFromWhereItIsDue) {
+  constexpr double kAside = 0.004, kLate = 0.01, kSpeed = 0.2;
+  const Vec2 start(0.3, -0.2);
+  CommandedMotion commanded{start, Vec2(kSpeed, 0.0), 0.4};
+  commanded.path = Path::circle(start, 0.5, 0.5);
+  MotionRecord record;
+  for (int i = 0; i < 5000; ++i) {
+    const double due = kSpeed * i / kRate;
+    const PathSample here = commanded.path->at(due - kLate);
+    PlantTruth truth;
+    truth.time = i / kRate;
+    truth.p_WG.head<2>() = here.p + kAside * Vec2(-std::sin(here.heading), std::cos(here.heading));
+    record.add(truth, here.heading, RobotState{}, due);
+  }
+  const Metrics m = evaluate(record, commanded, kRate);
+  EXPECT_NEAR(*m.path.cross_track_mean_mm, 1e3 * kAside, 1e-9);
+  EXPECT_NEAR(*m.path.cross_track_max_mm, 1e3 * kAside, 1e-9);
+  EXPECT_NEAR(*m.path.along_track_mean_mm, 1e3 * kLate, 1e-9);
+  commanded.path.reset();
+  EXPECT_FALSE(evaluate(record, commanded, kRate).path.cross_track_mean_mm) << "a spin has no path";
+}
+
 }  // namespace
 }  // namespace pirouette

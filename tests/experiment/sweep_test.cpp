@@ -45,6 +45,14 @@ profile = "nominal"
 com.radius_mean_mm = 11.2
 )";
 
+/// The tiny experiment with `from` replaced by `to`.
+std::string tiny_but(const std::string& from, const std::string& to) {
+  std::string text = kTiny;
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, text.npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
 std::string read(const fs::path& path) {
   std::ostringstream text;
   text << std::ifstream(path, std::ios::binary).rdbuf();
@@ -145,11 +153,8 @@ TEST_F(Sweeps, KeepWhatIsFinishedWhenStopped) {
 }
 
 TEST_F(Sweeps, RefuseABadTerrainBeforeAnythingRuns) {
-  std::string text = kTiny;
-  text.replace(text.find("key = \"plant.friction\""), 38 + 9,
-               "key = \"plant.terrain\"\nvalues = [\"flat\", \"moon\"]");
-  text.replace(text.find("plant.friction = 0.8"), 20, "plant.terrain = \"flat\"");
-  const Experiment experiment = load(text);
+  const Experiment experiment =
+      load(tiny_but("gait.stand_time = 0.2", "gait.stand_time = 0.2\nplant.terrain = \"moon\""));
   const Result<SweepResult> result = run_sweep(experiment, options("run", 1));
   ASSERT_FALSE(result);
   ASSERT_EQ(result.errors().size(), 1u);
@@ -158,11 +163,27 @@ TEST_F(Sweeps, RefuseABadTerrainBeforeAnythingRuns) {
 }
 
 TEST_F(Sweeps, RefuseAMetricThatThereIsNot) {
-  std::string text = kTiny;
-  text.replace(text.find("metric = \"com.radius_mean_mm\""), 29, "metric = \"com.radius_men_mm\"");
-  const Errors errors = check_sweep(load(text));
+  const Errors errors = check_sweep(
+      load(tiny_but("metric = \"com.radius_mean_mm\"", "metric = \"com.radius_men_mm\"")));
   ASSERT_EQ(errors.size(), 1u);
   EXPECT_NE(errors.front().to_string().find("did you mean com.radius_mean_mm?"), std::string::npos);
+}
+
+TEST_F(Sweeps, TellWhichBoundsAreMissed) {
+  const Experiment experiment = load(std::string(kTiny) + R"([[bounds]]
+row = "ours"
+metric = "com.radius_mean_mm"
+max = 1e-6
+[[bounds]]
+metric = "fell"
+max = 0
+)");
+  const Result<SweepResult> result = run_sweep(experiment, options("run", 2));
+  ASSERT_TRUE(result);
+  const std::vector<std::string> missed = Report(experiment, result.value()).missed_bounds();
+  ASSERT_EQ(missed.size(), 2u);  // one for each friction
+  EXPECT_TRUE(missed.front().starts_with("ours, plant.friction 0.6 (nominal): com.radius_mean_mm"))
+      << missed.front();
 }
 
 TEST(TrialKey, StandsForTheConfiguration) {

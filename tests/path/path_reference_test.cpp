@@ -4,6 +4,7 @@
 
 #include "path/kinematic_robot.hpp"
 #include "pirouette/base/planar_twist.hpp"
+#include "pirouette/base/rotation.hpp"
 #include "support/vectors.hpp"
 
 namespace pirouette {
@@ -29,6 +30,8 @@ RobotState standing_at(const Vec2& p_WG, double yaw) {
   robot.yaw = yaw;
   return robot.state();
 }
+
+double distance_to(const Vec2& a, const Vec2& b) { return (a - b).norm(); }
 
 TEST(PathReference, RestsWhereTheRobotStood) {
   PathReference reference(anchored());
@@ -196,6 +199,134 @@ TEST(PathReference, StoppingEndsWhereTheRobotIs) {
   EXPECT_EQ(loop.point.yaw_rate, 0.0);
   EXPECT_EQ(loop.point.v_H, Vec2::Zero());
   EXPECT_LT((loop.point.p_WG - where).norm(), 0.06);  // 0.04 m is the braking way
+}
+
+TEST(PathReference, TheRampKeepsTheRadius) {
+  // Anchored at the origin, a turn of 0.5 m to the left is about (0, 0.5) from its first moment on.
+  PathLoop loop(anchored(PathTracker::kNone));
+  for (int i = 0; i < 2000; ++i) {
+    loop.step(walk({0.35, 0.0}, 0.7));
+    ASSERT_NEAR(distance_to(loop.point.p_WG, {0.0, 0.5}), 0.5, 1e-9);
+  }
+}
+
+/// Half a metre straight on, then a bend to the left; given away from the origin.
+Path bend() {
+  const std::vector<Vec2> points = {{2.0, 0.0}, {2.5, 0.0}, {2.9, 0.2}, {3.0, 0.6}, {3.0, 1.0}};
+  return Path::spline(points, false).value();
+}
+
+/// `bend()` as it lies when followed from `start` with its tangent along `heading`.
+Path bend_from(const Vec2& start, double heading) {
+  Path path = bend();
+  path.start_at(start, heading);
+  return path;
+}
+
+TEST(PathReferenceOnAPath, BeginsWhereTheRobotStandsAndStaysOnThePathToItsEnd) {
+  PathLoop loop(anchored());
+  loop.robot.p_WG = {0.3, -0.4};
+  loop.robot.yaw = 2.0;
+  loop.reference.follow(bend());
+  const Path path = bend_from({0.3, -0.4}, 2.0);
+  for (int i = 0; i < 6000; ++i) {
+    loop.step(walk({0.2, 0.0}, 0.7));
+    const PathSample due = path.at(loop.point.arc_length);
+    ASSERT_LT(distance(loop.point.p_WG, due.p), 1e-9);
+    ASSERT_NEAR(wrap_angle(loop.point.yaw - due.heading), 0.0, 1e-9);
+    // Feed-forward: along the tangent, and turning as the path bends.
+    ASSERT_NEAR(loop.point.v_H.y(), 0.0, 1e-9);
+    ASSERT_NEAR(loop.point.yaw_rate, due.curvature * loop.point.v_H.x(), 1e-9);
+  }
+  EXPECT_NEAR(loop.point.arc_length, path.length(), 1e-3);
+  EXPECT_LT(loop.point.v_H.norm(), 0.01);
+  EXPECT_LT(distance_to(loop.robot.p_WG, path.at(path.length()).p), 0.005);
+}
+
+TEST(PathReferenceOnAPath, TheDirectionOfTheVelocityIsThatOfThePathInTheBody) {
+  for (const double direction_deg : {90.0, -90.0, 180.0, 30.0}) {
+    PathLoop loop(anchored());
+    loop.reference.follow(bend());
+    const Vec2 v_H = rot2(radians(direction_deg)) * Vec2(0.2, 0.0);
+    const Path path = bend_from(Vec2::Zero(), radians(direction_deg));
+    loop.run(walk(v_H, 0.0), 5.0);
+    const PathSample due = path.at(loop.point.arc_length);
+    EXPECT_LT(distance(loop.point.p_WG, due.p), 1e-9);
+    EXPECT_NEAR(wrap_angle(loop.point.yaw + radians(direction_deg) - due.heading), 0.0, 1e-9);
+    EXPECT_LT(distance(loop.point.v_H, v_H), 1e-9);
+  }
+}
+
+TEST(PathReferenceOnAPath, AHeldHeadingDoesNotTurnWithThePath) {
+  PathLoop loop(anchored());
+  loop.robot.yaw = 0.4;
+  loop.reference.follow(bend());
+  MotionCommand command = walk({0.2, 0.0}, 0.0);
+  command.hold_heading = true;
+  loop.run(command, 7.0);
+  EXPECT_NEAR(loop.point.yaw, 0.4, 1e-12);
+  EXPECT_EQ(loop.point.yaw_rate, 0.0);
+  const Path path = bend_from(Vec2::Zero(), 0.4);
+  EXPECT_LT(distance(loop.point.p_WG, path.at(loop.point.arc_length).p), 1e-9);
+  EXPECT_GT(loop.point.v_H.y(), 0.1) << "the path has turned left, the body has not";
+}
+
+TEST(PathReferenceOnAPath, WaitsForARobotThatIsStuck) {
+  PathConfig config = anchored();
+  PathReference reference(config);
+  reference.follow(bend());
+  const RobotState stuck = standing_at(Vec2::Zero(), 0.0);
+  PathPoint point;
+  for (int i = 0; i < 5000; ++i) {
+    point = reference.update(walk({0.2, 0.0}, 0.0), stuck, kDt);
+    ASSERT_LE(point.arc_length, config.max_path_lead + 1e-12);
+  }
+  EXPECT_NEAR(point.arc_length, config.max_path_lead, 1e-12);
+  EXPECT_LT(point.v_H.norm(), 1e-9);
+}
+
+TEST(PathReferenceOnAPath, ACommandedPointPutsThePathInTheWorldAndTheRobotJoinsIt) {
+  PathReference reference(anchored());
+  reference.follow(bend());
+  MotionCommand command = walk({0.2, 0.0}, 0.0);
+  command.point = Vec2(1.0, 1.0);
+  command.heading = 0.0;
+  const Vec2 robot(1.3, 1.1);
+  const PathPoint point = reference.update(command, standing_at(robot, 0.0), kDt);
+  const Path path = bend_from({1.0, 1.0}, 0.0);
+  EXPECT_GT(point.arc_length, 0.2);
+  EXPECT_LT(distance(point.p_WG, path.at(path.nearest(robot)).p), 1e-5);
+}
+
+TEST(PathReferenceOnAPath, ItsCrossingIsPassedOnTheSameBranch) {
+  std::vector<Vec2> points;
+  for (int i = 0; i < 24; ++i) {
+    const double a = 2.0 * kPi * i / 24.0;
+    points.emplace_back(0.6 * std::sin(a), 0.6 * std::sin(a) * std::cos(a));
+  }
+  const Path path = Path::spline(points, true).value();
+  PathLoop loop(anchored());
+  loop.reference.follow(path);
+  double previous = 0.0;
+  for (int i = 0; i < 15000; ++i) {
+    loop.step(walk({0.2, 0.0}, 0.0));
+    ASSERT_LE(loop.point.arc_length - previous, 0.2 * kDt + 1e-12);
+    previous = loop.point.arc_length;
+  }
+  EXPECT_NEAR(previous, 0.2 * 30.0, 0.1) << "the ramp takes 0.04 m, no branch is skipped";
+}
+
+TEST(PathReferenceOnAPath, WithoutThePathTheTwistIsFollowedAgain) {
+  PathReference reference(anchored()), plain(anchored());
+  reference.follow(bend());
+  reference.follow(std::nullopt);
+  for (int i = 0; i < 500; ++i) {
+    const RobotState state = standing_at(Vec2::Zero(), 0.0);
+    const PathPoint point = reference.update(walk({0.2, 0.0}, 0.7), state, kDt);
+    const PathPoint expected = plain.update(walk({0.2, 0.0}, 0.7), state, kDt);
+    ASSERT_EQ(point.p_WG, expected.p_WG);
+    ASSERT_EQ(point.yaw, expected.yaw);
+  }
 }
 
 TEST(PathReference, TurningTheWorldTurnsTheReference) {

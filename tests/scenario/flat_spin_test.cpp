@@ -19,8 +19,8 @@ TEST_P(SpinOnTheFlat, EightTurnsStayOnThePointAtTheCommandedRate) {
   const Metrics m = spin({set("run.rate", rate), "run.seed=" + std::to_string(seed)});
   EXPECT_FALSE(m.fell);
   EXPECT_GE(m.turns_done, 7.9);
-  // The product's promise is 1 % and 15 mm. These bounds are about twice what was measured over all rates and
-  // seeds, so that a regression shows long before the promise breaks.
+  // The product's promise is 1 % and 15 mm. These bounds are about twice what was measured over all
+  // rates and seeds, so that a regression shows long before the promise breaks.
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 2e-3);
   EXPECT_LE(m.com.radius_mean_mm.value_or(1e9), 3.0);
   EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 4.0);
@@ -28,12 +28,13 @@ TEST_P(SpinOnTheFlat, EightTurnsStayOnThePointAtTheCommandedRate) {
 
 std::string spin_name(const testing::TestParamInfo<std::tuple<double, int>>& test_info) {
   const auto [rate, seed] = test_info.param;
-  return std::string(rate > 0.0 ? "Left" : "Right") + std::to_string(std::lround(std::abs(rate) * 10.0)) +
-         "DeciradSeed" + std::to_string(seed);
+  return std::string(rate > 0.0 ? "Left" : "Right") +
+         std::to_string(std::lround(std::abs(rate) * 10.0)) + "DeciradSeed" + std::to_string(seed);
 }
 
 INSTANTIATE_TEST_SUITE_P(Rates, SpinOnTheFlat,
-                         testing::Combine(testing::Values(0.3, 0.7, 1.2, 2.0, -0.3, -0.7, -1.2, -2.0),
+                         testing::Combine(testing::Values(0.3, 0.7, 1.2, 2.0, -0.3, -0.7, -1.2,
+                                                          -2.0),
                                           testing::Values(1, 2, 3, 4, 5)),
                          spin_name);
 
@@ -47,7 +48,8 @@ TEST(SpinWithTrueState, StaysWithinHalfAMillimetreOfThePoint) {
 TEST(SpinFromAnOffsetStart, ReachesPointAndRateFromTenCentimetresAndThirtyDegrees) {
   for (const std::string start : {"[0.1, 0.0]", "[-0.06, 0.08]", "[0.0, -0.1]"}) {
     for (const char* yaw : {"30", "-30"}) {
-      const Metrics m = spin({"run.start_offset=" + start, std::string("run.start_yaw_deg=") + yaw, "run.turns=3"});
+      const Metrics m = spin(
+          {"run.start_offset=" + start, std::string("run.start_yaw_deg=") + yaw, "run.turns=3"});
       EXPECT_FALSE(m.fell) << start << " " << yaw;
       EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2) << start << " " << yaw;
       EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 15.0) << start << " " << yaw;
@@ -70,8 +72,10 @@ TEST(SpinWithoutContactSensing, TheScheduleStandsInForTheFlags) {
 }
 
 TEST(SpinAtOtherTimings, AnyPeriodAndDutyOfTheTrotHolds) {
-  for (const auto& [period, duty] : {std::pair{"0.3", "0.6"}, {"0.4", "0.5"}, {"0.5", "0.75"}, {"0.7", "0.6"}}) {
-    const Metrics m = spin({std::string("gait.period=") + period, std::string("gait.duty=") + duty, "run.turns=2"});
+  for (const auto& [period, duty] :
+       {std::pair{"0.3", "0.6"}, {"0.4", "0.5"}, {"0.5", "0.75"}, {"0.7", "0.6"}}) {
+    const Metrics m = spin(
+        {std::string("gait.period=") + period, std::string("gait.duty=") + duty, "run.turns=2"});
     EXPECT_FALSE(m.fell) << period << " " << duty;
     EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2) << period << " " << duty;
   }

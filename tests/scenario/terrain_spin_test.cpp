@@ -9,7 +9,8 @@ namespace {
 class SpinOnTerrain : public testing::TestWithParam<const char*> {};
 
 TEST_P(SpinOnTerrain, ThreeTurnsWithoutAFall) {
-  const Metrics m = test::spin({std::string("plant.terrain=\"") + GetParam() + "\"", "run.turns=3"});
+  const Metrics m =
+      test::spin({std::string("plant.terrain=\"") + GetParam() + "\"", "run.turns=3"});
   EXPECT_FALSE(m.fell);
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2);
 }

@@ -10,7 +10,7 @@
 namespace pirouette {
 namespace {
 
-using test::run;
+using test::spin;
 
 constexpr double kMissing = 1e9;  // mm
 
@@ -25,23 +25,34 @@ Metrics circle(double radius, double rate, const std::vector<std::string>& more)
   std::vector<std::string> overrides = {"run.rate=" + std::to_string(rate),
                                         velocity(radius * std::abs(rate), 0.0)};
   overrides.insert(overrides.end(), more.begin(), more.end());
-  return run(overrides);
+  return spin(overrides);
 }
 
 class TurnOnTheFlat : public testing::TestWithParam<std::tuple<double, double>> {};
 
+// The nominal contact is soft: a foot sinks by 3 mm, which shortens the radius on which it rolls,
+// and creeps outwards, by 10 mm/s at 0.7 m/s. Blind odometry sees neither, so the error grows with
+// the radius; up to 9.9 mm at 1 m and 5.4 mm at 0.5 m were measured.
 TEST_P(TurnOnTheFlat, EightTurnsStayOnTheCircle) {
   const auto [radius, rate] = GetParam();
   for (int seed = 1; seed <= 3; ++seed) {
     const Metrics m = circle(radius, rate, {seed_of(seed)});
     EXPECT_FALSE(m.fell);
     EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-3);
-    EXPECT_LE(m.path.cross_track_mean_mm.value_or(kMissing), 5.0) << "seed " << seed;
+    EXPECT_LE(m.path.cross_track_mean_mm.value_or(kMissing), 12.0 * radius) << "seed " << seed;
   }
 }
 
+TEST_P(TurnOnTheFlat, AndWithinFiveMillimetresOfItOnAFirmContact) {
+  const auto [radius, rate] = GetParam();
+  const Metrics m = circle(radius, rate, {"plant.contact_time_constant=0.005"});
+  EXPECT_FALSE(m.fell);
+  EXPECT_LE(m.path.cross_track_mean_mm.value_or(kMissing), 5.0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Radii, TurnOnTheFlat,
-                         testing::Combine(testing::Values(0.25, 0.5), testing::Values(0.7, -0.7)));
+                         testing::Combine(testing::Values(0.25, 0.5, 1.0),
+                                          testing::Values(0.7, -0.7)));
 
 TEST(TurnWithTrueState, TheTrackerItselfStaysWithinTwoMillimetresAtEveryRadius) {
   for (const double radius : {0.25, 0.5, 1.0}) {
@@ -56,14 +67,14 @@ TEST(TurnWithTrueState, TheTrackerItselfStaysWithinTwoMillimetresAtEveryRadius) 
 TEST(TurnInEveryDirection, BackwardsAndSidewaysAreAsGoodAsForwards) {
   constexpr double kSpeed = 0.175;  // m/s: a radius of 0.25 m
   for (const auto& [x, y] : {std::pair{-kSpeed, 0.0}, {0.0, kSpeed}, {0.0, -kSpeed}}) {
-    const Metrics m = run({velocity(x, y), "run.turns=3"});
+    const Metrics m = spin({velocity(x, y), "run.turns=3"});
     EXPECT_FALSE(m.fell) << x << " " << y;
     EXPECT_LE(m.path.cross_track_mean_mm.value_or(kMissing), 5.0) << x << " " << y;
   }
 }
 
 TEST(StraightWalking, KeepsToTheLine) {
-  const Metrics m = run({"run.rate=0", velocity(0.3, 0.0), "run.turns=1"});
+  const Metrics m = spin({"run.rate=0", velocity(0.3, 0.0), "run.turns=1"});
   EXPECT_FALSE(m.fell);
   // 4.5 m on: a yaw that is wrong by 2 mrad leaves the line by 9 mm there.
   EXPECT_LE(m.path.cross_track_mean_mm.value_or(kMissing), 10.0);
@@ -73,7 +84,7 @@ class PathOnTheFlat : public testing::TestWithParam<const char*> {};
 
 TEST_P(PathOnTheFlat, TwoLapsStayOnThePath) {
   for (int seed = 1; seed <= 5; ++seed) {
-    const Metrics m = run({std::string("run.path=") + GetParam(), seed_of(seed)});
+    const Metrics m = spin({std::string("run.path=") + GetParam(), seed_of(seed)});
     EXPECT_FALSE(m.fell);
     EXPECT_LE(m.path.cross_track_mean_mm.value_or(kMissing), 10.0) << "seed " << seed;
     EXPECT_LE(m.path.along_track_mean_mm.value_or(kMissing), 15.0) << "seed " << seed;
@@ -83,7 +94,7 @@ TEST_P(PathOnTheFlat, TwoLapsStayOnThePath) {
 INSTANTIATE_TEST_SUITE_P(Shipped, PathOnTheFlat, testing::Values("figure8", "square"));
 
 TEST(SpinOnThePoint, HasNoPathToLeave) {
-  const Metrics m = run({"run.turns=0.1", "run.settle_time=0.2"});
+  const Metrics m = spin({"run.turns=0.1", "run.settle_time=0.2"});
   EXPECT_FALSE(m.path.cross_track_mean_mm.has_value());
   EXPECT_FALSE(m.path.along_track_mean_mm.has_value());
 }

@@ -23,8 +23,8 @@ constexpr double fore_sign(Leg leg) { return (leg == Leg::kFR || leg == Leg::kFL
 /// The leg across the body's diagonal: the other one of a trot pair.
 constexpr Leg diagonal(Leg leg) { return static_cast<Leg>(3 - static_cast<int>(leg)); }
 
-/// One T for each leg, indexed by Leg. Iterates in the order FR FL RR RL. Starts as T{} or, for fixed-size
-/// Eigen types, whose T{} is uninitialised, as zeros.
+/// One T for each leg, indexed by Leg. Iterates in the order FR FL RR RL. Starts as T{} or, for
+/// fixed-size Eigen types, whose T{} is uninitialised, as zeros.
 template <class T>
 struct PerLeg {
   std::array<T, kLegCount> values = initial_values();

@@ -29,8 +29,8 @@ using Errors = std::vector<Error>;
 template <class T>
 class [[nodiscard]] Result {
  public:
-  Result(T value) : state_(std::move(value)) {}        // NOLINT(google-explicit-constructor)
-  Result(Errors errors) : state_(std::move(errors)) {} // NOLINT(google-explicit-constructor)
+  Result(T value) : state_(std::move(value)) {}              // NOLINT(google-explicit-constructor)
+  Result(Errors errors) : state_(std::move(errors)) {}       // NOLINT(google-explicit-constructor)
   Result(Error error) : state_(Errors{std::move(error)}) {}  // NOLINT(google-explicit-constructor)
 
   bool ok() const { return std::holds_alternative<T>(state_); }

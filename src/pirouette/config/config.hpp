@@ -1,8 +1,9 @@
 // Every parameter of the library, once: name, default, unit, allowed range, meaning.
 //
 // Each struct has a static `fields(self, visit)` that calls, one line a parameter,
-//   visit(self.member, "key", "unit", Range{min, max}, "meaning")   number or fixed-size list of numbers
-//   visit(self.member, "key", "meaning")                            bool, enum, string or nested group
+//   visit(self.member, "key", "unit", Range{min, max}, "meaning")   number or fixed-size list of
+//   numbers visit(self.member, "key", "meaning")                            bool, enum, string or
+//   nested group
 // `self` is a const or mutable reference, so the same list serves reading and writing.
 #pragma once
 
@@ -67,7 +68,8 @@ struct GaitConfig {
   double max_turn_per_stride = 1.05;
   double min_period = 0.18;
 
-  /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far in one.
+  /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far
+  /// in one.
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
     return std::max(std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate));
@@ -83,7 +85,8 @@ struct GaitConfig {
     v(s.early_contact_progress, "early_contact_progress", "1", Range{0.0, 1.0},
       "From this share of the swing on, a measured contact ends the swing early.");
     v(s.max_turn_per_stride, "max_turn_per_stride", "rad", Range{0.1, 10.0},
-      "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk by more.");
+      "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk "
+      "by more.");
     v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "That rule shortens no further.");
   }
 };
@@ -102,7 +105,8 @@ struct FootholdConfig {
     v(s.max_offset, "max_offset", "m", Range{0.01, 0.4},
       "Largest horizontal distance of a foothold from its nominal point below the hip.");
     v(s.rolling_compensation, "rolling_compensation",
-      "With foot.model rolling: aim half the expected contact travel back, so that the mean contact is nominal.");
+      "With foot.model rolling: aim half the expected contact travel back, so that the mean "
+      "contact is nominal.");
   }
 };
 
@@ -154,7 +158,8 @@ struct ComConfig {
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
     v(s.planner, "planner",
-      "linear: interpolation between current and commanded CoM; psp: projected support polygon, E16-E19.");
+      "linear: interpolation between current and commanded CoM; psp: projected support polygon, "
+      "E16-E19.");
     v(s.weight, "weight", "Family of the PSP vertex weight over the phase.");
     v(s.width, "width", "1", Range{0.01, 5.0},
       "Gaussian: sigma as a share of the phase. Poisson: lambda = 4 (0.25 / width)^2. Geometric: "
@@ -188,7 +193,8 @@ struct PathConfig {
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
     v(s.reference, "reference",
-      "velocity: follow the twist only; integrated: the set-point integrates the command near the robot "
+      "velocity: follow the twist only; integrated: the set-point integrates the command near the "
+      "robot "
       "(MIT); anchored: a point or path fixed in the world.");
     v(s.tracker, "tracker", "none; lqr: E21-E23; lqi: with an integrator in the body frame.");
     v(s.state_weight, "state_weight", "1/m^2, 1/m^2, 1/rad^2", Range{0.0, 1e6},
@@ -226,7 +232,8 @@ struct BodyConfig {
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
-    v(s.height, "height", "m", Range{0.05, 1.0}, "Height of the CoM above the ground, along gravity.");
+    v(s.height, "height", "m", Range{0.05, 1.0},
+      "Height of the CoM above the ground, along gravity.");
     v(s.stance_offset, "stance_offset", "m, m", Range{-0.2, 0.2},
       "Nominal foothold outwards of the point below the hip: forwards and sideways.");
   }
@@ -296,14 +303,17 @@ struct MpcConfig {
     v(s.step_share, "step_share", "1", Range{0.01, 0.5},
       "Length of a prediction step as a share of the gait period.");
     v(s.weight_rpy, "weight_rpy", "1/rad^2", Range{0.0, 1e6}, "Weight of roll, pitch, yaw.");
-    v(s.weight_position, "weight_position", "1/m^2", Range{0.0, 1e6}, "Weight of the CoM position.");
+    v(s.weight_position, "weight_position", "1/m^2", Range{0.0, 1e6},
+      "Weight of the CoM position.");
     v(s.weight_angular_velocity, "weight_angular_velocity", "s^2/rad^2", Range{0.0, 1e6},
       "Weight of the angular velocity.");
     v(s.weight_velocity, "weight_velocity", "s^2/m^2", Range{0.0, 1e6},
       "Weight of the CoM velocity.");
     v(s.weight_force, "weight_force", "1/N^2", Range{1e-9, 1.0}, "Weight of the forces.");
-    v(s.friction, "friction", "1", Range{0.05, 2.0}, "Friction coefficient assumed by MPC and WBC.");
-    v(s.max_normal_force, "max_normal_force", "N", Range{1.0, 1e5}, "Limit of a foot's normal force.");
+    v(s.friction, "friction", "1", Range{0.05, 2.0},
+      "Friction coefficient assumed by MPC and WBC.");
+    v(s.max_normal_force, "max_normal_force", "N", Range{1.0, 1e5},
+      "Limit of a foot's normal force.");
     v(s.min_normal_force, "min_normal_force", "N", Range{0.0, 100.0},
       "Least normal force of a foot in contact.");
     v(s.max_iterations, "max_iterations", "1", Range{1, 10000},
@@ -325,7 +335,8 @@ struct WbcConfig {
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
-    v(s.orientation_kp, "orientation_kp", "1/s^2", Range{0.0, 1e4}, "Trunk orientation, stiffness.");
+    v(s.orientation_kp, "orientation_kp", "1/s^2", Range{0.0, 1e4},
+      "Trunk orientation, stiffness.");
     v(s.orientation_kd, "orientation_kd", "1/s", Range{0.0, 1e3}, "Trunk orientation, damping.");
     v(s.position_kp_xy, "position_kp_xy", "1/s^2", Range{0.0, 1e4}, "CoM x and y, stiffness.");
     v(s.position_kd_xy, "position_kd_xy", "1/s", Range{0.0, 1e3}, "CoM x and y, damping.");
@@ -358,7 +369,8 @@ struct JointConfig {
     v(s.kp_swing, "kp_swing", "N m/rad", Range{0.0, 1e3}, "Joint stiffness of a swing leg.");
     v(s.kd_swing, "kd_swing", "N m s/rad", Range{0.0, 100.0}, "Joint damping of a swing leg.");
     v(s.kp_stand, "kp_stand", "N m/rad", Range{0.0, 1e3}, "Joint stiffness while standing.");
-    v(s.kd_stand, "kd_stand", "N m s/rad", Range{0.0, 100.0}, "Joint damping while standing and standing down.");
+    v(s.kd_stand, "kd_stand", "N m s/rad", Range{0.0, 100.0},
+      "Joint damping while standing and standing down.");
     v(s.filter_time, "filter_time", "s", Range{0.0, 0.1},
       "Time constant of the low-pass filter of the feed-forward torque; 0: none.");
     v(s.max_torque_rate, "max_torque_rate", "N m/s", Range{1.0, 1e7},
@@ -381,7 +393,8 @@ struct SafetyConfig {
     v(s.min_height_share, "min_height_share", "1", Range{0.0, 1.0},
       "The robot counts as fallen when the CoM is lower than this share of body.height.");
     v(s.max_bad_readings, "max_bad_readings", "ticks", Range{0, 10000},
-      "Non-finite sensor values or commands are bridged by the last good ones for this many ticks, then the "
+      "Non-finite sensor values or commands are bridged by the last good ones for this many ticks, "
+      "then the "
       "controller stands down.");
     v(s.max_solver_failures, "max_solver_failures", "1", Range{0, 10000},
       "The last good forces are held over this many failed solutions in a row, then the controller "
@@ -450,14 +463,17 @@ struct PlantConfig {
     v(s.friction, "friction", "1", Range{0.0, 5.0}, "Sliding friction of feet and ground.");
     v(s.torsional_friction, "torsional_friction", "m", Range{0.0, 1.0},
       "Torsional friction of feet and ground.");
-    v(s.rolling_friction, "rolling_friction", "m", Range{0.0, 1.0}, "Rolling friction of feet and ground.");
+    v(s.rolling_friction, "rolling_friction", "m", Range{0.0, 1.0},
+      "Rolling friction of feet and ground.");
     v(s.impratio, "impratio", "1", Range{0.1, 1e4},
       "Ratio of frictional to normal impedance of the contacts.");
     v(s.command_latency, "command_latency", "s", Range{0.0, 0.05},
       "Age of the joint command when it reaches the motors.");
-    v(s.torque_scale, "torque_scale", "1", Range{0.1, 2.0}, "Motor torque constant, relative to nominal.");
+    v(s.torque_scale, "torque_scale", "1", Range{0.1, 2.0},
+      "Motor torque constant, relative to nominal.");
     v(s.torque_scale_spread, "torque_scale_spread", "1", Range{0.0, 0.5},
-      "Each motor's torque constant is drawn per seed within this share of torque_scale, uniformly.");
+      "Each motor's torque constant is drawn per seed within this share of torque_scale, "
+      "uniformly.");
     v(s.joint_friction_scale, "joint_friction_scale", "1", Range{0.0, 100.0},
       "Dry friction of the joints, as a multiple of the robot file's.");
     v(s.joint_damping_scale, "joint_damping_scale", "1", Range{0.0, 100.0},
@@ -489,16 +505,20 @@ struct RunConfig {
     v(s.velocity, "velocity", "m/s, m/s", Range{-2.0, 2.0},
       "Commanded velocity, forwards and to the left; zero spins on the spot.");
     v(s.path, "path",
-      "Path to follow instead of run.velocity and run.rate: a name under experiments/paths/ or a file ending in .toml; "
+      "Path to follow instead of run.velocity and run.rate: a name under experiments/paths/ or a "
+      "file ending in .toml; "
       "empty: none.");
-    v(s.path_speed, "path_speed", "m/s", Range{0.0, 2.0}, "Speed along run.path; 0: as its file says.");
+    v(s.path_speed, "path_speed", "m/s", Range{0.0, 2.0},
+      "Speed along run.path; 0: as its file says.");
     v(s.laps, "laps", "1", Range{0.01, 1e5}, "Laps of a closed run.path to record after settling.");
-    v(s.turns, "turns", "1", Range{0.01, 1e5}, "Turns to record after settling; 10 s each without a yaw rate.");
+    v(s.turns, "turns", "1", Range{0.01, 1e5},
+      "Turns to record after settling; 10 s each without a yaw rate.");
     v(s.settle_time, "settle_time", "s", Range{0.0, 600.0},
       "Time from the command to the first recorded sample.");
     v(s.seed, "seed", "1", Range{0, 9e15}, "Seed of noise, biases and terrain.");
     v(s.fixed_point, "fixed_point",
-      "The commanded point is run.point and the heading 0, also when a start offset or yaw is given; "
+      "The commanded point is run.point and the heading 0, also when a start offset or yaw is "
+      "given; "
       "false: where the CoM stands when the gait starts.");
     v(s.point, "point", "m, m", Range{-10.0, 10.0}, "The commanded point in the world.");
     v(s.start_offset, "start_offset", "m, m", Range{-10.0, 10.0},

@@ -318,7 +318,8 @@ class Expansion {
     if (!config) return;
     const bool traced = is_traced(settings);
     for (const std::int64_t seed : experiment_.seeds) {
-      ExperimentTrial trial{row, levels, seed, traced && seed == experiment_.seeds.front(), *config};
+      ExperimentTrial trial{row, levels, seed, traced && seed == experiment_.seeds.front(),
+                            *config};
       trial.config.run.seed = seed;
       experiment_.trials.push_back(std::move(trial));
     }
@@ -362,9 +363,8 @@ class Expansion {
   bool is_traced(const std::vector<Setting>& settings) const {
     return !settings_.trace.empty() &&
            std::all_of(settings_.trace.begin(), settings_.trace.end(), [&](const Setting& wanted) {
-             const auto found =
-                 std::find_if(settings.rbegin(), settings.rend(),
-                              [&](const Setting& s) { return s.key == wanted.key; });
+             const auto found = std::find_if(settings.rbegin(), settings.rend(),
+                                             [&](const Setting& s) { return s.key == wanted.key; });
              return found != settings.rend() && found->value == wanted.value;
            });
   }
@@ -374,10 +374,9 @@ class Expansion {
     for (const Setting& wanted : settings_.trace) {
       const auto axis = std::find_if(experiment_.axes.begin(), experiment_.axes.end(),
                                      [&](const ExperimentAxis& a) { return a.key == wanted.key; });
-      const bool known =
-          axis != experiment_.axes.end() &&
-          std::find(axis->values.begin(), axis->values.end(), without_quotes(wanted.value)) !=
-              axis->values.end();
+      const bool known = axis != experiment_.axes.end() &&
+                         std::find(axis->values.begin(), axis->values.end(),
+                                   without_quotes(wanted.value)) != axis->values.end();
       if (known) continue;
       report({experiment_.file.string(), wanted.line, "trace." + wanted.key,
               "given " + wanted.value + "; allowed: a value of an axis"});

@@ -1,4 +1,5 @@
-// An experiment is data: what varies, over which seeds, what is read off, and what the paper printed.
+// An experiment is data: what varies, over which seeds, what is read off, and what the paper
+// printed.
 #pragma once
 
 #include <cstdint>
@@ -57,7 +58,7 @@ struct ExperimentBound {
 
 struct Experiment {
   std::filesystem::path file;
-  std::string name;    ///< the file's, without its extension
+  std::string name;  ///< the file's, without its extension
   std::string title;
   std::string source;  ///< of the printed results
   std::vector<ExperimentRow> rows;
@@ -72,11 +73,12 @@ struct Experiment {
 
 /// What the command line changes in an experiment.
 struct ExperimentChanges {
-  std::optional<int> seeds;      ///< run seeds 1 to this instead of the file's
-  std::optional<double> turns;   ///< run.turns of every trial
+  std::optional<int> seeds;     ///< run seeds 1 to this instead of the file's
+  std::optional<double> turns;  ///< run.turns of every trial
 };
 
-/// The experiment with the configuration of each trial, or everything that is wrong with it at once.
+/// The experiment with the configuration of each trial, or everything that is wrong with it at
+/// once.
 Result<Experiment> load_experiment(const std::filesystem::path& file,
                                    const ExperimentChanges& changes = {});
 

@@ -1,5 +1,6 @@
-// How a parameter declares itself: one line with name, unit, range and meaning. Loader, range check,
-// dump and the documentation table all walk these lines (config/toml.cpp, config/config_doc.cpp).
+// How a parameter declares itself: one line with name, unit, range and meaning. Loader, range
+// check, dump and the documentation table all walk these lines (config/toml.cpp,
+// config/config_doc.cpp).
 #pragma once
 
 #include <array>

@@ -13,10 +13,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr Range kSpeed{0.01, 2.0};        // m/s
+constexpr Range kSpeed{0.01, 2.0};          // m/s
 constexpr Range kDirection{-180.0, 180.0};  // deg
-constexpr double kMaxCoordinate = 1000.0;  // m
-constexpr double kMinDistance = 0.01;      // m, between neighbouring points
+constexpr double kMaxCoordinate = 1000.0;   // m
+constexpr double kMinDistance = 0.01;       // m, between neighbouring points
 constexpr std::size_t kMaxPoints = 10000;
 
 /// Finite number of the node; a boolean is none.
@@ -64,8 +64,7 @@ class PathReader {
 
  private:
   void report(const toml::node& node, const std::string& key, std::string message) {
-    errors_.push_back(
-        {file_, static_cast<int>(node.source().begin.line), key, std::move(message)});
+    errors_.push_back({file_, static_cast<int>(node.source().begin.line), key, std::move(message)});
   }
 
   void check(const toml::node& node, const std::string& key, bool good, const char* allowed) {

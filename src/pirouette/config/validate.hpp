@@ -10,8 +10,8 @@
 
 namespace pirouette {
 
-/// Relations between parameters, and the files of robot and path. Part of load_config; call it after changing
-/// a Config in code. Empty: all is well.
+/// Relations between parameters, and the files of robot and path. Part of load_config; call it
+/// after changing a Config in code. Empty: all is well.
 Errors validate(const Config& config);
 
 /// Path of the robot's MJCF: robots/<robot>/<robot>.xml of the data folder, or config.robot itself

@@ -28,8 +28,8 @@ BodyReference body_reference(const HorizonInput& in) noexcept {
   return out;
 }
 
-BodyMotion reference_after(const BodyReference& reference, const TerrainPlane& plane, double com_height,
-                           double t) noexcept {
+BodyMotion reference_after(const BodyReference& reference, const TerrainPlane& plane,
+                           double com_height, double t) noexcept {
   const TwistCommand& twist = reference.twist;
   const double turned = twist.yaw_rate * t;
   // The velocity reference lies in the robot's heading, so carry it in world axes.

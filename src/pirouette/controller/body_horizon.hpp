@@ -25,7 +25,7 @@ struct HorizonInput {
 BodyReference body_reference(const HorizonInput& in) noexcept;
 
 /// The same reference carried `t` seconds along its twist, parallel to the plane.
-BodyMotion reference_after(const BodyReference& reference, const TerrainPlane& plane, double com_height,
-                           double t) noexcept;
+BodyMotion reference_after(const BodyReference& reference, const TerrainPlane& plane,
+                           double com_height, double t) noexcept;
 
 }  // namespace pirouette

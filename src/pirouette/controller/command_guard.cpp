@@ -10,7 +10,8 @@ Vec3 limit_step(const Vec3& target, const Vec3& from, double step) {
 }
 
 bool all_finite(const LegCommand& c) {
-  return c.q.allFinite() && c.dq.allFinite() && c.kp.allFinite() && c.kd.allFinite() && c.tau.allFinite();
+  return c.q.allFinite() && c.dq.allFinite() && c.kp.allFinite() && c.kd.allFinite() &&
+         c.tau.allFinite();
 }
 
 }  // namespace
@@ -21,8 +22,8 @@ bool CommandGuard::update(const JointCommand& raw, double dt, JointCommand& comm
   for (const Leg leg : kLegs) {
     LegCommand& c = safe[leg];
     const Vec3 filtered = tau_[leg] + share * (c.tau - tau_[leg]);
-    c.tau = limit_step(filtered.cwiseMax(-legs_[leg].tau_max).cwiseMin(legs_[leg].tau_max), tau_[leg],
-                       config_.max_torque_rate * dt);
+    c.tau = limit_step(filtered.cwiseMax(-legs_[leg].tau_max).cwiseMin(legs_[leg].tau_max),
+                       tau_[leg], config_.max_torque_rate * dt);
     c.q = limit_step(c.q.cwiseMax(legs_[leg].q_min).cwiseMin(legs_[leg].q_max), q_[leg],
                      config_.max_position_rate * dt);
     if (!all_finite(raw[leg]) || !all_finite(c)) return false;

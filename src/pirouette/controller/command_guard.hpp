@@ -10,10 +10,12 @@ namespace pirouette {
 
 class CommandGuard {
  public:
-  CommandGuard(const JointConfig& config, const PerLeg<LegGeometry>& legs) : config_(config), legs_(legs) {}
+  CommandGuard(const JointConfig& config, const PerLeg<LegGeometry>& legs)
+      : config_(config), legs_(legs) {}
 
-  /// Low-passes the feed-forward torque, keeps torques and angles within the robot's limits and limits the rate of
-  /// both. False: `raw` held a value that is not finite; `command` is then left as it was.
+  /// Low-passes the feed-forward torque, keeps torques and angles within the robot's limits and
+  /// limits the rate of both. False: `raw` held a value that is not finite; `command` is then left
+  /// as it was.
   bool update(const JointCommand& raw, double dt, JointCommand& command) noexcept;
 
   /// The next update starts from `measured` joint angles and no torque.
@@ -26,7 +28,8 @@ class CommandGuard {
   PerLeg<Vec3> q_{};
 };
 
-/// Pure joint damping: the stated safe state after every failure. The legs give way slowly and the robot sinks.
+/// Pure joint damping: the stated safe state after every failure. The legs give way slowly and the
+/// robot sinks.
 JointCommand damped_stand_down(double kd);
 
 }  // namespace pirouette

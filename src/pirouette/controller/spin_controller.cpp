@@ -31,10 +31,11 @@ double microseconds_since(Clock::time_point start) {
 
 bool is_finite(const SensorReading& s) {
   bool ok = std::isfinite(s.time) && s.specific_force_B.allFinite() && s.w_WB_B.allFinite();
-  for (const Leg leg : kLegs) ok = ok && s.joint_position[leg].allFinite() && s.joint_velocity[leg].allFinite();
+  for (const Leg leg : kLegs)
+    ok = ok && s.joint_position[leg].allFinite() && s.joint_velocity[leg].allFinite();
   if (s.truth) {
-    ok = ok && s.truth->p_WB.allFinite() && s.truth->R_WB.allFinite() && s.truth->v_WB_W.allFinite() &&
-         s.truth->w_WB_B.allFinite();
+    ok = ok && s.truth->p_WB.allFinite() && s.truth->R_WB.allFinite() &&
+         s.truth->v_WB_W.allFinite() && s.truth->w_WB_B.allFinite();
   }
   return ok;
 }
@@ -44,7 +45,8 @@ bool is_finite(const MotionCommand& c) {
          (!c.heading || std::isfinite(*c.heading));
 }
 
-/// Joint angles with every foot below its hip, CoM (taken at the trunk origin) at the working height.
+/// Joint angles with every foot below its hip, CoM (taken at the trunk origin) at the working
+/// height.
 PerLeg<Vec3> nominal_posture(const PerLeg<LegGeometry>& legs, double com_height) {
   PerLeg<Vec3> q;
   for (const Leg leg : kLegs) {
@@ -85,8 +87,9 @@ struct SpinController::Impl {
     const Vec2 centre = hip_centre(legs);
     for (const Leg leg : kLegs) {
       const LegGeometry& g = legs[leg];
-      nominal_H[leg] = g.p_BH.head<2>() + Vec2(0.0, g.abad_offset) - centre +
-                       Vec2(fore_sign(leg) * c.body.stance_offset[0], side_sign(leg) * c.body.stance_offset[1]);
+      nominal_H[leg] =
+          g.p_BH.head<2>() + Vec2(0.0, g.abad_offset) - centre +
+          Vec2(fore_sign(leg) * c.body.stance_offset[0], side_sign(leg) * c.body.stance_offset[1]);
     }
     reset(BasePose{});
   }
@@ -166,7 +169,8 @@ void SpinController::Impl::reset(const BasePose& pose) {
   yaw.reset(rpy_from_rotation(pose.R_WB).yaw);
 }
 
-/// Bridges single bad inputs by the last good ones, one nominal period on; false when there have been too many.
+/// Bridges single bad inputs by the last good ones, one nominal period on; false when there have
+/// been too many.
 bool SpinController::Impl::accept(const SensorReading& sensors, const MotionCommand& command) {
   if (is_finite(sensors) && is_finite(command)) {
     last_good = sensors;
@@ -184,7 +188,8 @@ void SpinController::Impl::start_from_first_reading() {
   std::array<Vec3, kLegCount> contacts;
   const Vec3 up = Vec3::UnitZ();
   for (const Leg leg : kLegs) {
-    const FootState state = foot_state(legs[leg], last_good.joint_position[leg], last_good.joint_velocity[leg]);
+    const FootState state =
+        foot_state(legs[leg], last_good.joint_position[leg], last_good.joint_velocity[leg]);
     p_WF[leg] = start.p_WB + start.R_WB * state.p_BF;
     contacts[index(leg)] = foot.contact_point(p_WF[leg], up);
   }
@@ -214,7 +219,8 @@ double SpinController::Impl::trust(Leg leg) const {
   const LegPhase& phase = trace.gait.leg[leg];
   if (!phase.stance || !trace.contacts[leg].measured) return 0.0;
   if (config.estimation.trust_window <= 0.0) return 1.0;
-  return std::clamp(std::min(phase.progress, 1.0 - phase.progress) / config.estimation.trust_window, 0.0, 1.0);
+  return std::clamp(std::min(phase.progress, 1.0 - phase.progress) / config.estimation.trust_window,
+                    0.0, 1.0);
 }
 
 /// With the point-foot model the terrain plane runs through the sphere centres.
@@ -248,7 +254,8 @@ void SpinController::Impl::estimate(const SensorReading& sensors, double dt) {
   state.joint_position = sensors.joint_position;
   state.joint_velocity = sensors.joint_velocity;
   for (const Leg leg : kLegs) {
-    trace.feet[leg] = foot_state(legs[leg], sensors.joint_position[leg], sensors.joint_velocity[leg]);
+    trace.feet[leg] =
+        foot_state(legs[leg], sensors.joint_position[leg], sensors.joint_velocity[leg]);
   }
   if (config.estimation.source == EstimatorSource::kTruth && sensors.truth) {
     state.p_WB = sensors.truth->p_WB;
@@ -256,8 +263,8 @@ void SpinController::Impl::estimate(const SensorReading& sensors, double dt) {
     state.v_WB_W = sensors.truth->v_WB_W;
     state.w_WB_B = sensors.truth->w_WB_B;
   } else {
-    const Attitude attitude =
-        attitude_filter.update({sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking}, dt);
+    const Attitude attitude = attitude_filter.update(
+        {sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking}, dt);
     state.R_WB = attitude.R_WB;
     state.w_WB_B = attitude.w_WB_B;
     OdometryInput in;
@@ -285,9 +292,10 @@ void SpinController::Impl::find_contacts(const SensorReading& sensors) {
     const LegPhase& phase = trace.gait.leg[leg];
     const bool was_in_contact = contact.in_contact;
     contact.measured = sensors.foot_contact ? (*sensors.foot_contact)[leg] : phase.stance;
-    const bool late_in_swing = !phase.stance && phase.progress >= config.gait.early_contact_progress;
-    landed_early[leg] =
-        late_in_swing && (landed_early[leg] || (sensors.foot_contact.has_value() && contact.measured));
+    const bool late_in_swing =
+        !phase.stance && phase.progress >= config.gait.early_contact_progress;
+    landed_early[leg] = late_in_swing && (landed_early[leg] ||
+                                          (sensors.foot_contact.has_value() && contact.measured));
     contact.in_contact = phase.stance || landed_early[leg];
     contact.n_W = trace.plane.normal();
     contact.p_WC = foot.contact_point(trace.state.p_WF[leg], contact.n_W);
@@ -356,8 +364,9 @@ void SpinController::Impl::plan_feet(double dt) {
   horizon.p_WG = com.com;
   horizon.yaw = state.rpy.yaw;
   horizon.com_height = com_height_above_plane();
-  horizon.max_lead = config.path.reference == PathReferenceMode::kIntegrated ? config.path.max_integrated_lead
-                                                                             : config.path.max_position_lead;
+  horizon.max_lead = config.path.reference == PathReferenceMode::kIntegrated
+                         ? config.path.max_integrated_lead
+                         : config.path.max_position_lead;
   trace.reference = body_reference(horizon);
 
   for (const Leg leg : kLegs) {
@@ -366,8 +375,8 @@ void SpinController::Impl::plan_feet(double dt) {
       trace.swing[leg] = {state.p_WF[leg], trace.contacts[leg].v_WF_rolling_W, Vec3::Zero()};
       continue;
     }
-    trace.swing[leg] = swing_target({p_WF_liftoff[leg], trace.footholds[leg].p_WF, phase.progress, phase.duration,
-                                     config.gait.swing_height});
+    trace.swing[leg] = swing_target({p_WF_liftoff[leg], trace.footholds[leg].p_WF, phase.progress,
+                                     phase.duration, config.gait.swing_height});
   }
 }
 
@@ -391,7 +400,8 @@ MpcInput SpinController::Impl::mpc_input() const {
     step.p_WG_mid = mid.p_WG;
     for (const Leg leg : kLegs) {
       const LegPhase ahead = clock.phase_at(leg, middle);
-      const bool same_stance = trace.contacts[leg].in_contact && ahead.stride == trace.gait.leg[leg].stride;
+      const bool same_stance =
+          trace.contacts[leg].in_contact && ahead.stride == trace.gait.leg[leg].stride;
       step.stance[leg] = k == 0 ? trace.contacts[leg].in_contact : ahead.stance;
       step.p_WC[leg] = same_stance ? trace.contacts[leg].p_WC : trace.footholds[leg].p_WC;
     }
@@ -464,7 +474,8 @@ bool SpinController::Impl::has_fallen() const {
   const RobotState& state = trace.state;
   const double tilt = std::acos(std::clamp(state.R_WB.col(2).dot(trace.plane.normal()), -1.0, 1.0));
   const double height = state.p_WG.z() - trace.plane.height(state.p_WG.x(), state.p_WG.y());
-  return tilt > config.safety.max_tilt || height < config.safety.min_height_share * com_height_above_plane();
+  return tilt > config.safety.max_tilt ||
+         height < config.safety.min_height_share * com_height_above_plane();
 }
 
 void SpinController::Impl::stand_down(ControllerStatus why) {
@@ -491,7 +502,8 @@ ControllerStatus SpinController::status() const { return impl_->trace.status; }
 const TickTrace& SpinController::trace() const { return impl_->trace; }
 const TickTiming& SpinController::timing() const { return impl_->timing; }
 
-const JointCommand& SpinController::tick(const SensorReading& sensors, const MotionCommand& command) noexcept {
+const JointCommand& SpinController::tick(const SensorReading& sensors,
+                                         const MotionCommand& command) noexcept {
   Impl& s = *impl_;
   TickTrace& t = s.trace;
   if (is_stood_down(t.status)) return t.command;

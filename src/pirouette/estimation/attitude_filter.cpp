@@ -5,7 +5,8 @@
 namespace pirouette {
 
 namespace {
-constexpr double kMaxSpecificForce = 3.0;  // g, above which a reading is an impact and not taken at its size
+constexpr double kMaxSpecificForce =
+    3.0;  // g, above which a reading is an impact and not taken at its size
 }  // namespace
 
 Attitude AttitudeFilter::update(const AttitudeInput& in, double dt) noexcept {
@@ -20,11 +21,13 @@ Attitude AttitudeFilter::update(const AttitudeInput& in, double dt) noexcept {
 
   const Vec3 a_turn_B = w_WB_B.cross(R_WB.transpose() * in.v_WB_W);
   const Vec3 up_measured_B = in.specific_force_B - a_turn_B;
-  // Linear in the reading: the gait's accelerations average to zero, which their directions would not.
+  // Linear in the reading: the gait's accelerations average to zero, which their directions would
+  // not.
   const Vec3 up_B = R_WB.row(2).transpose();
   const Vec3 tilt_error_B = clamp_norm<3>(up_measured_B / kGravity, kMaxSpecificForce).cross(up_B);
   if (!in.at_rest) {
-    gyro_bias_ -= dt / (config_.attitude_time_constant * config_.gyro_bias_time_constant) * tilt_error_B;
+    gyro_bias_ -=
+        dt / (config_.attitude_time_constant * config_.gyro_bias_time_constant) * tilt_error_B;
   }
   const Vec3 correction = tilt_error_B / config_.attitude_time_constant;
   const Vec3 turn = dt * (w_WB_B + correction);

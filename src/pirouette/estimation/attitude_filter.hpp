@@ -18,12 +18,13 @@ struct Attitude {
   Vec3 w_WB_B = Vec3::Zero();  ///< rad/s, gyro without its estimated bias
 };
 
-/// Complementary filter on SO(3): the gyro is integrated, gravity slowly corrects roll and pitch, and what
-/// gravity keeps correcting is gyro bias. Yaw is the gyro's integral: nothing else on board observes it.
+/// Complementary filter on SO(3): the gyro is integrated, gravity slowly corrects roll and pitch,
+/// and what gravity keeps correcting is gyro bias. Yaw is the gyro's integral: nothing else on
+/// board observes it.
 ///
-/// The accelerometer measures gravity plus the trunk's own acceleration. In a steady turn the latter is
-/// omega x v for every point of the body, which is subtracted; the gait's part averages out over the filter's
-/// time constant. An accelerometer bias becomes a tilt error of bias / g.
+/// The accelerometer measures gravity plus the trunk's own acceleration. In a steady turn the
+/// latter is omega x v for every point of the body, which is subtracted; the gait's part averages
+/// out over the filter's time constant. An accelerometer bias becomes a tilt error of bias / g.
 class AttitudeFilter {
  public:
   explicit AttitudeFilter(const EstimationConfig& config) : config_(config) {}

@@ -7,17 +7,19 @@ namespace {
 constexpr int kPosition = 0;
 constexpr int kVelocity = 1;
 constexpr double kInitialVariance = 1e-4;
-// Absolute position is unobservable blind: the variance of a common shift of trunk and feet grows for ever.
-// Whenever it reaches this limit, that one direction is scaled to half the variance, so that an hour-long run
-// loses no precision. Scaling, unlike subtracting, keeps every covariance positive semidefinite.
+// Absolute position is unobservable blind: the variance of a common shift of trunk and feet grows
+// for ever. Whenever it reaches this limit, that one direction is scaled to half the variance, so
+// that an hour-long run loses no precision. Scaling, unlike subtracting, keeps every covariance
+// positive semidefinite.
 constexpr double kMaxPositionVariance = 1.0;
 
 constexpr int foot_state(Leg leg) { return 2 + static_cast<int>(index(leg)); }
 
-/// Scalar measurement updates are exact because the measurement noise is diagonal. `h` selects state `plus`
-/// minus state `minus` (minus < 0: none).
+/// Scalar measurement updates are exact because the measurement noise is diagonal. `h` selects
+/// state `plus` minus state `minus` (minus < 0: none).
 template <int N, class Axes>
-void update_scalar(Eigen::Matrix<double, N, N>& P, Axes&& x, int plus, int minus, const auto& z, double variance) {
+void update_scalar(Eigen::Matrix<double, N, N>& P, Axes&& x, int plus, int minus, const auto& z,
+                   double variance) {
   Eigen::Matrix<double, N, 1> Ph = P.col(plus);
   if (minus >= 0) Ph -= P.col(minus);
   const double s = Ph(plus) - (minus >= 0 ? Ph(minus) : 0.0) + variance;
@@ -51,8 +53,8 @@ void LegOdometryFilter::predict(const OdometryInput& in, double dt) noexcept {
   }
 }
 
-/// A foot in the air is wherever the leg holds it: its state starts afresh from the trunk's at every tick, so that at
-/// touchdown it knows nothing of its last stand.
+/// A foot in the air is wherever the leg holds it: its state starts afresh from the trunk's at
+/// every tick, so that at touchdown it knows nothing of its last stand.
 void LegOdometryFilter::place_lifted_feet(const OdometryInput& in) noexcept {
   for (const Leg leg : kLegs) {
     if (in.foot[leg].trust > 0.0) continue;
@@ -79,8 +81,10 @@ OdometryEstimate LegOdometryFilter::update(const OdometryInput& in, double dt) n
     const Vec3 p_relative = -foot.p_BF_W;
     const Vec3 v_measured = -foot.v_BF_W + foot.v_WF_rolling_W;
     const auto update_axes = [&](auto& P, auto&& x, auto axes) {
-      update_scalar<kStates>(P, x, kPosition, foot_state(leg), axes(p_relative), config_.measurement_position);
-      update_scalar<kStates>(P, x, kVelocity, -1, axes(v_measured), config_.measurement_velocity * factor);
+      update_scalar<kStates>(P, x, kPosition, foot_state(leg), axes(p_relative),
+                             config_.measurement_position);
+      update_scalar<kStates>(P, x, kVelocity, -1, axes(v_measured),
+                             config_.measurement_velocity * factor);
     };
     update_axes(P_horizontal_, horizontal, [](const Vec3& v) -> Vec2 { return v.head<2>(); });
     update_axes(P_vertical_, vertical, [](const Vec3& v) { return v.tail<1>().eval(); });

@@ -9,12 +9,13 @@ namespace pirouette {
 
 /// What one foot contributes; world axes, so the attitude is already in it.
 struct FootOdometry {
-  Vec3 p_BF_W = Vec3::Zero();          ///< m, sphere centre from the trunk origin
-  Vec3 v_BF_W = Vec3::Zero();          ///< m/s, its velocity relative to the trunk origin: omega x R p_BF + R J_v dq
+  Vec3 p_BF_W = Vec3::Zero();  ///< m, sphere centre from the trunk origin
+  Vec3 v_BF_W =
+      Vec3::Zero();  ///< m/s, its velocity relative to the trunk origin: omega x R p_BF + R J_v dq
   Vec3 v_WF_rolling_W = Vec3::Zero();  ///< m/s, its velocity if it rolls without slip
   double trust = 0.0;                  ///< in [0, 1]; 0: in the air, nothing it reports is used
-  double centre_height = 0.0;          ///< m, expected height of the sphere centre when on the ground
-  bool use_height = false;             ///< false: no opinion on the height of the ground
+  double centre_height = 0.0;  ///< m, expected height of the sphere centre when on the ground
+  bool use_height = false;     ///< false: no opinion on the height of the ground
 };
 
 struct OdometryInput {
@@ -30,10 +31,11 @@ struct OdometryEstimate {
 
 /// [Bledt18] linear Kalman filter with rolling feet: docs/equations.md#kalman-filter.
 ///
-/// State (18): trunk position and velocity and four sphere centres. Measurements (28): foot positions and
-/// velocities relative to the trunk, and foot heights; a foot in the air reports none, and its state is placed
-/// afresh. Attitude enters only through the inputs, and all noise is isotropic in the horizontal plane, so the filter falls apart exactly into one 6-state filter
-/// (p, v, c_FR, c_FL, c_RR, c_RL) per world axis; x and y share their covariance.
+/// State (18): trunk position and velocity and four sphere centres. Measurements (28): foot
+/// positions and velocities relative to the trunk, and foot heights; a foot in the air reports
+/// none, and its state is placed afresh. Attitude enters only through the inputs, and all noise is
+/// isotropic in the horizontal plane, so the filter falls apart exactly into one 6-state filter (p,
+/// v, c_FR, c_FL, c_RR, c_RL) per world axis; x and y share their covariance.
 class LegOdometryFilter {
  public:
   static constexpr int kStates = 6;
@@ -55,7 +57,9 @@ class LegOdometryFilter {
 
   void predict(const OdometryInput& in, double dt) noexcept;
   void place_lifted_feet(const OdometryInput& in) noexcept;
-  double noise_factor(double trust) const { return 1.0 + config_.swing_noise_factor * (1.0 - trust); }
+  double noise_factor(double trust) const {
+    return 1.0 + config_.swing_noise_factor * (1.0 - trust);
+  }
 
   EstimationConfig config_;
   StateByAxis x_ = StateByAxis::Zero();

@@ -23,11 +23,11 @@ inline constexpr double kRecordLength = 10.0;        ///< s, of one peak-to-peak
 
 /// What was asked of the robot, in the true world.
 struct CommandedMotion {
-  Vec2 point = Vec2::Zero();  ///< m
-  Vec2 v_H = Vec2::Zero();    ///< m/s, heading axes
-  double yaw_rate = 0.0;      ///< rad/s
-  bool hold_heading = false;  ///< v_H does not turn with the path
-  std::optional<Path> path;   ///< in the world, from where the command came; absent: a spin
+  Vec2 point = Vec2::Zero();      ///< m
+  Vec2 v_H = Vec2::Zero();        ///< m/s, heading axes
+  double yaw_rate = 0.0;          ///< rad/s
+  bool hold_heading = false;      ///< v_H does not turn with the path
+  std::optional<Path> path = {};  ///< in the world, from where the command came; absent: a spin
 };
 
 /// The recorded part of a run: one entry per control tick in every list.
@@ -87,7 +87,8 @@ struct TimingMetrics {
 
 /// What the numbers hold for.
 struct RunContext {
-  std::string path, robot, terrain, controller, profile, estimator, reference, tracker, foot_model, com_planner;
+  std::string path, robot, terrain, controller, profile, estimator, reference, tracker, foot_model,
+      com_planner;
   double duty = 0.0;
   double period = 0.0;
   double torsional_friction = 0.0;

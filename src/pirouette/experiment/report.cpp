@@ -21,6 +21,7 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kBias = "com.body_bias_mm_s";
 constexpr const char* kBiasCircle = "com.bias_circle_mm";
 constexpr const char* kRadius = "com.radius_mean_mm";
+constexpr const char* kFallTime = "fall_time_s";
 constexpr const char* kDrift = "com.drift_per_turn_mm";
 constexpr const char* kOdometry = "estimator.position_error_mm";
 constexpr double kPercent = 100.0;
@@ -134,6 +135,7 @@ class MarkdownWriter {
     }
     out_ << "\n## Plant: " << profile << "\n\n";
     write_table();
+    write_falls();
     write_comparison();
     write_bias();
     write_ladder();
@@ -192,6 +194,19 @@ class MarkdownWriter {
     out_ << "\n";
   }
 
+  void write_falls() {
+    std::string falls;
+    for (const ReportEntry* entry : entries_) {
+      if (entry->falls == 0) continue;
+      falls += "- " + place_text(experiment_, *entry) + ": " + std::to_string(entry->falls) +
+               " of " + std::to_string(entry->trials);
+      const Spread* time = find(*entry, kFallTime);
+      if (time != nullptr) falls += ", after " + with_spread(*time) + " s";
+      falls += "\n";
+    }
+    out_ << (falls.empty() ? "\nNo trial fell.\n" : "\nFalls:\n\n" + falls);
+  }
+
   void write_comparison() {
     if (std::none_of(entries_.begin(), entries_.end(),
                      [](const ReportEntry* entry) { return entry->printed != nullptr; })) {
@@ -215,8 +230,8 @@ class MarkdownWriter {
       const Spread* ours = find(entry, column.metric);
       if (printed == nullptr || ours == nullptr) continue;
       out_ << separator << without_unit(column.title) << " " << short_number(ours->mean) << " vs "
-           << short_number(*printed) << unit_of(column.title) << " (" << difference(ours->mean, *printed)
-           << ")";
+           << short_number(*printed) << unit_of(column.title) << " ("
+           << difference(ours->mean, *printed) << ")";
       separator = "; ";
     }
     const Spread* bias = find(entry, kBias);
@@ -257,7 +272,8 @@ class MarkdownWriter {
     const Number low = quantile(shares, 0.25), middle = quantile(shares, 0.5),
                  high = quantile(shares, 0.75);
     if (!low || !middle || !high) return;
-    out_ << "\nThe circle that the body-frame bias draws (bias / yaw rate) is " << short_number(*middle)
+    out_ << "\nThe circle that the body-frame bias draws (bias / yaw rate) is "
+         << short_number(*middle)
          << " of the radius measured in the median over these rows (quartiles "
          << short_number(*low) << " and " << short_number(*high) << ").\n";
   }
@@ -345,7 +361,7 @@ Report::Report(const Experiment& of, const SweepResult& with) : experiment(&of),
       const bool fell = values.at("fell") == 1.0;
       entry.falls += fell ? 1 : 0;
       for (const auto& [name, value] : values) {
-        if (value && (!fell || name == "fall_time_s")) samples[name].push_back(*value);
+        if (value && (!fell || name == kFallTime)) samples[name].push_back(*value);
       }
     }
     for (const auto& [name, x] : samples) {
@@ -415,7 +431,8 @@ std::string Report::csv() const {
   for (const ExperimentAxis& axis : experiment->axes) out << "," << quoted(axis.key);
   out << ",trials,falls";
   for (const ExperimentColumn& column : experiment->columns) {
-    out << "," << column.metric << "," << column.metric << ".deviation," << column.metric << ".printed";
+    out << "," << column.metric << "," << column.metric << ".deviation," << column.metric
+        << ".printed";
   }
   out << "\n";
   for (const ReportEntry& entry : entries) {
@@ -468,18 +485,20 @@ std::vector<std::string> Report::missed_bounds() const {
   for (const ExperimentBound& bound : experiment->bounds) {
     for (const ReportEntry& entry : entries) {
       if (!bound.row.empty() && bound.row != entry.row->label) continue;
-      const std::string place = place_text(*experiment, entry) + " (" + entry.first->config.profile +
-                                "): " + bound.metric + " ";
+      const std::string place = place_text(*experiment, entry) + " (" +
+                                entry.first->config.profile + "): " + bound.metric + " ";
       const Spread* spread = find(entry, bound.metric);
-      if (entry.falls > 0 && bound.metric != "fall_time_s") {
+      if (entry.falls > 0 && bound.metric != kFallTime) {
         missed.push_back(place + "counts as missed, " + std::to_string(entry.falls) + " of " +
                          std::to_string(entry.trials) + " trials fell");
       } else if (spread == nullptr) {
         missed.push_back(place + "is absent");
       } else if (bound.min && !(spread->mean >= *bound.min)) {
-        missed.push_back(place + short_number(spread->mean) + ", below " + short_number(*bound.min));
+        missed.push_back(place + short_number(spread->mean) + ", below " +
+                         short_number(*bound.min));
       } else if (bound.max && !(spread->mean <= *bound.max)) {
-        missed.push_back(place + short_number(spread->mean) + ", above " + short_number(*bound.max));
+        missed.push_back(place + short_number(spread->mean) + ", above " +
+                         short_number(*bound.max));
       }
     }
   }

@@ -19,12 +19,12 @@ struct Spread {
 /// One row of the experiment at one value of each axis, over all seeds.
 struct ReportEntry {
   const ExperimentRow* row = nullptr;
-  const ExperimentTrial* first = nullptr;   ///< of its trials; carries levels and configuration
-  const PrintedResult* printed = nullptr;   ///< nullptr: nothing printed for it
+  const ExperimentTrial* first = nullptr;  ///< of its trials; carries levels and configuration
+  const PrintedResult* printed = nullptr;  ///< nullptr: nothing printed for it
   std::size_t trials = 0;
   std::size_t falls = 0;
-  std::map<std::string, Spread> metrics;    ///< of the trials without a fall, but fall_time_s
-  std::string trace;                        ///< path within the sweep's folder; empty: none
+  std::map<std::string, Spread> metrics;  ///< of the trials without a fall, but fall_time_s
+  std::string trace;                      ///< path within the sweep's folder; empty: none
 };
 
 /// Points into `experiment`, which must outlive it.

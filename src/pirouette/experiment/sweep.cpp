@@ -18,6 +18,7 @@
 #include <type_traits>
 
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/config/path_file.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/experiment/trace_file.hpp"
@@ -151,7 +152,8 @@ class Pool {
   Errors run() {
     report();
     const unsigned wanted = options_.jobs > 0 ? options_.jobs : std::thread::hardware_concurrency();
-    const std::size_t count = std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, jobs_.size()));
+    const std::size_t count =
+        std::clamp<std::size_t>(wanted, 1, std::max<std::size_t>(1, jobs_.size()));
     {
       std::vector<std::jthread> workers;
       for (std::size_t i = 0; i < count; ++i) workers.emplace_back([this] { work(); });
@@ -278,7 +280,12 @@ std::string trial_key(const Config& config) {
   if (const Result<std::string> robot = resolve_robot(config)) {
     fingerprint.add(read_text(robot.value()));
   }
-  for (const std::string& text : {std::string(version()), std::string(commit()), physics_version()}) {
+  if (!config.run.path.empty()) {
+    const Result<fs::path> path = resolve_path(config.run);
+    if (path) fingerprint.add(read_text(path.value()));
+  }
+  for (const std::string& text :
+       {std::string(version()), std::string(commit()), physics_version()}) {
     fingerprint.add(text);
   }
   return fingerprint.hex();

@@ -25,8 +25,8 @@ MetricValues metric_values(const Metrics& metrics);
 /// Keys of MetricValues in the order of metrics.json.
 std::vector<std::string> metric_names();
 
-/// 16 hexadecimal digits that stand for the trial: of its configuration, the robot's file, and the
-/// versions of this program and of the physics.
+/// 16 hexadecimal digits that stand for the trial: of its configuration, the files of robot and
+/// path, and the versions of this program and of the physics.
 std::string trial_key(const Config& config);
 
 struct SweepProgress {
@@ -40,7 +40,7 @@ struct SweepOptions {
   unsigned jobs = 0;  ///< threads; 0: one for each hardware thread
   /// Where kResultsFile and kTracesFolder are; shared by experiments, which then share trials.
   std::filesystem::path folder;
-  bool fresh = false;  ///< forget what is there
+  bool fresh = false;                                  ///< forget what is there
   std::function<void(const SweepProgress&)> progress;  ///< one call at a time; may be empty
   std::function<bool()> stop;  ///< asked from all threads; true ends the sweep; may be empty
 };
@@ -51,7 +51,8 @@ struct SweepResult {
   bool interrupted = false;
 };
 
-/// What would keep run_sweep() from starting: a robot's file, a terrain, a metric that there is not.
+/// What would keep run_sweep() from starting: a robot's file, a terrain, a metric that there is
+/// not.
 Errors check_sweep(const Experiment& experiment);
 
 /// Runs what `folder` does not hold yet, appending each trial as it finishes. The result does not

@@ -160,7 +160,8 @@ Result<Setup> build(const Config& config) {
   Result<Plant> plant =
       Plant::create(config, mjcf.value(), start, radians(config.run.start_yaw_deg));
   if (controller && plant) {
-    return Setup{std::move(motion).value(), std::move(plant).value(), std::move(controller).value()};
+    return Setup{std::move(motion).value(), std::move(plant).value(),
+                 std::move(controller).value()};
   }
   // Both read the robot's file: what is wrong with it is said once.
   Errors errors = controller ? Errors{} : controller.errors();
@@ -199,7 +200,8 @@ class Trial {
       }
       yaw_.update(rpy_from_rotation(truth.base.R_WB).yaw);
       if (tick_ == schedule_.command) begin_motion(truth);
-      const JointCommand& command = tick(tick_ < schedule_.command ? MotionCommand{} : motion_.command);
+      const JointCommand& command =
+          tick(tick_ < schedule_.command ? MotionCommand{} : motion_.command);
       log(truth);
       if (!report(truth)) return {.metrics = {}, .interrupted = true};
       if (tick_ < schedule_.end) plant_.advance(command);

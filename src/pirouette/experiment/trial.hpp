@@ -39,7 +39,8 @@ const char* commit();
 /// counts 10 s; run.path is walked run.laps times, once when open.
 double trial_duration(const Config& config);
 
-/// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, the path.
+/// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, the
+/// path.
 Errors check_trial(const Config& config);
 
 /// Stands for gait.stand_time, then commands run.velocity and run.rate, or run.path; records after

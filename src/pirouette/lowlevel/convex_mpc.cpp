@@ -93,12 +93,14 @@ void ConvexMpc::fill_hessian(double dt) noexcept {
       // Translation: a force of step j moves p by (k - j - 1/2) dt^2/m and v by dt/m.
       double sum_arms = 0.0;
       for (int k = l + 1; k <= N; ++k) sum_arms += (k - j - 0.5) * (k - l - 0.5);
-      const Vec3 translation = square(dt / mass_) * (square(dt) * sum_arms * weight_p + n * weight_v);
+      const Vec3 translation =
+          square(dt / mass_) * (square(dt) * sum_arms * weight_p + n * weight_v);
 
       int a = row;
       for (; a < variable_count_ && variables_[static_cast<size_t>(a)].step == j; ++a) {
         const Mat3 WX = variables_[static_cast<size_t>(a)].W.transpose() * X;
-        for (int b = column; b < variable_count_ && variables_[static_cast<size_t>(b)].step == l; ++b) {
+        for (int b = column; b < variable_count_ && variables_[static_cast<size_t>(b)].step == l;
+             ++b) {
           Mat3 block = WX * variables_[static_cast<size_t>(b)].W;
           block.diagonal() += translation;
           if (a == b) block.diagonal().array() += config_.weight_force;
@@ -150,13 +152,15 @@ void ConvexMpc::fill_gradient(const MpcInput& in) noexcept {
     const Variable& variable = variables_[static_cast<size_t>(i)];
     const auto j = static_cast<size_t>(variable.step);
     const Vec3 rotation = grad_S_rpy[j] - C_[j].transpose() * grad_rpy[j] + grad_w[j];
-    const Vec3 translation = dt / mass_ * (dt * (grad_kp[j] - (variable.step + 0.5) * grad_p[j]) + grad_v[j]);
+    const Vec3 translation =
+        dt / mass_ * (dt * (grad_kp[j] - (variable.step + 0.5) * grad_p[j]) + grad_v[j]);
     problem_->g.segment<3>(3 * i) = 2.0 * (variable.W.transpose() * rotation + translation);
   }
 }
 
 void ConvexMpc::fill_constraints(const Vec3& n_W) noexcept {
-  const FrictionPyramid pyramid(n_W, config_.friction, config_.min_normal_force, config_.max_normal_force);
+  const FrictionPyramid pyramid(n_W, config_.friction, config_.min_normal_force,
+                                config_.max_normal_force);
   for (int i = 0; i < variable_count_; ++i) {
     problem_->C.block<kPyramidRows, 3>(kPyramidRows * i, 3 * i) = pyramid.C;
     problem_->lower.segment<kPyramidRows>(kPyramidRows * i) = pyramid.lower;

@@ -13,12 +13,12 @@
 namespace pirouette {
 
 inline constexpr int kMaxHorizon = 24;
-/// Forces planned at once; see QpSolver::kMaxVariables. A trot of duty 0.6 has 40 in 16 steps; four feet that
-/// stand have them in 10.
+/// Forces planned at once; see QpSolver::kMaxVariables. A trot of duty 0.6 has 40 in 16 steps; four
+/// feet that stand have them in 10.
 inline constexpr int kMaxForces = QpSolver::kMaxVariables / 3;
 
-/// State of the single rigid body: attitude (rad, yaw unwrapped), CoM position, angular velocity and CoM
-/// velocity, all in world axes.
+/// State of the single rigid body: attitude (rad, yaw unwrapped), CoM position, angular velocity
+/// and CoM velocity, all in world axes.
 struct BodyMotion {
   Vec3 rpy = Vec3::Zero();
   Vec3 p_WG = Vec3::Zero();
@@ -28,11 +28,12 @@ struct BodyMotion {
 
 /// One step of the prediction: the reference at its end, and the ground during it.
 struct MpcStep {
-  BodyMotion reference;         ///< at the end of the step
-  RollPitchYaw rpy_mid;         ///< rad, reference attitude at the middle of the step
-  Vec3 p_WG_mid = Vec3::Zero();  ///< m, reference CoM at the middle of the step: lever arms are about it
-  PerLeg<bool> stance{};        ///< legs that may push during the step
-  PerLeg<Vec3> p_WC{};          ///< m, their contact points
+  BodyMotion reference;  ///< at the end of the step
+  RollPitchYaw rpy_mid;  ///< rad, reference attitude at the middle of the step
+  Vec3 p_WG_mid =
+      Vec3::Zero();       ///< m, reference CoM at the middle of the step: lever arms are about it
+  PerLeg<bool> stance{};  ///< legs that may push during the step
+  PerLeg<Vec3> p_WC{};    ///< m, their contact points
 };
 
 struct MpcInput {
@@ -44,10 +45,11 @@ struct MpcInput {
 
 /// [DiCarlo18], condensed in closed form: docs/equations.md#convex-mpc.
 ///
-/// The linear dynamics (equations.md section 8) are integrated exactly over each step with forces held. Since
-/// A^3 = 0, the response of a state to a force is a polynomial in the number of steps between them, so each
-/// 3x3 block of the Hessian is built from suffix sums in constant time. Swing legs have no variables. The
-/// prediction ends at the horizon or before the step that would exceed kMaxForces.
+/// The linear dynamics (equations.md section 8) are integrated exactly over each step with forces
+/// held. Since A^3 = 0, the response of a state to a force is a polynomial in the number of steps
+/// between them, so each 3x3 block of the Hessian is built from suffix sums in constant time. Swing
+/// legs have no variables. The prediction ends at the horizon or before the step that would exceed
+/// kMaxForces.
 class ConvexMpc {
  public:
   /// `mass` in kg; `inertia_B` in kg m^2 about the CoM, trunk axes.
@@ -80,10 +82,10 @@ class ConvexMpc {
 
   std::array<Variable, kMaxForces> variables_;
   int variable_count_ = 0;
-  int steps_ = 0;  ///< of the prediction
-  std::array<Mat3, kMaxHorizon> T_;       ///< attitude rate per angular velocity, during step i (E24)
-  std::array<Mat3, kMaxHorizon + 1> S_;   ///< sum of dt T_i over i < k
-  std::array<Mat3, kMaxHorizon> C_;       ///< part of S_k that a force of step j does not act through
+  int steps_ = 0;                    ///< of the prediction
+  std::array<Mat3, kMaxHorizon> T_;  ///< attitude rate per angular velocity, during step i (E24)
+  std::array<Mat3, kMaxHorizon + 1> S_;  ///< sum of dt T_i over i < k
+  std::array<Mat3, kMaxHorizon> C_;  ///< part of S_k that a force of step j does not act through
 };
 
 }  // namespace pirouette

@@ -5,7 +5,8 @@
 
 namespace pirouette {
 
-/// Two unit tangents that complete `n` to a right-handed frame (t1, t2, n); t1 lies along world x's projection.
+/// Two unit tangents that complete `n` to a right-handed frame (t1, t2, n); t1 lies along world x's
+/// projection.
 inline void ground_tangents(const Vec3& n, Vec3& t1, Vec3& t2) {
   t1 = (Vec3::UnitX() - n.x() * n).normalized();
   t2 = n.cross(t1);

@@ -1,4 +1,5 @@
-// The one place that knows the QP library: strictly convex, inequality-constrained, no allocation while solving.
+// The one place that knows the QP library: strictly convex, inequality-constrained, no allocation
+// while solving.
 #pragma once
 
 #include <Eigen/Core>
@@ -16,9 +17,10 @@ struct QpSolution {
 
 /// minimise 1/2 x' H x + g' x  subject to  C x >= lower,  H positive definite.
 ///
-/// The caller fills H, g, C and lower of a problem of the size at hand (`prepare`), then solves. The
-/// unconstrained optimum (one Cholesky factorisation) is tried first; when it violates a constraint the
-/// exact active-set solver (Goldfarb-Idnani, eiquadprog) takes over, under the iteration cap.
+/// The caller fills H, g, C and lower of a problem of the size at hand (`prepare`), then solves.
+/// The unconstrained optimum (one Cholesky factorisation) is tried first; when it violates a
+/// constraint the exact active-set solver (Goldfarb-Idnani, eiquadprog) takes over, under the
+/// iteration cap.
 class QpSolver {
  public:
   struct Problem {
@@ -29,8 +31,9 @@ class QpSolver {
     Eigen::VectorXd x;      ///< n, the solution
   };
 
-  /// Up to here the active-set library works without the heap. The triangular inverse that it begins with takes
-  /// n^2 numbers of scratch memory, from the stack while they are at most 128 KiB: n <= 128.
+  /// Up to here the active-set library works without the heap. The triangular inverse that it
+  /// begins with takes n^2 numbers of scratch memory, from the stack while they are at most 128
+  /// KiB: n <= 128.
   static constexpr int kMaxVariables = 126;
 
   /// Sizes the workspaces for every problem of `unit * k` variables, k = 1 .. `max_units`, with

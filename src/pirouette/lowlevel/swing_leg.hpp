@@ -13,9 +13,9 @@ struct SwingInput {
   double clearance = 0.05;           ///< m, apex above the higher end
 };
 
-/// Minimum-jerk motion in the horizontal plane; vertically a minimum-jerk rise to the apex at mid-swing and
-/// fall from it. Velocity and acceleration vanish at both ends, so that the foot lands softly and a moving
-/// target does not kick it. World axes.
+/// Minimum-jerk motion in the horizontal plane; vertically a minimum-jerk rise to the apex at
+/// mid-swing and fall from it. Velocity and acceleration vanish at both ends, so that the foot
+/// lands softly and a moving target does not kick it. World axes.
 SwingTarget swing_target(const SwingInput& in) noexcept;
 
 }  // namespace pirouette

@@ -41,7 +41,8 @@ void WholeBodyControl::map_legs(const WbcInput& in, const RobotModel& model) noe
     Jacobian J = model.foot_jacobian(leg);
     Vec3 task;
     if (in.contacts[leg].in_contact) {
-      // The material contact point accelerates like a rolling sphere's (E13), not like a fixed point.
+      // The material contact point accelerates like a rolling sphere's (E13), not like a fixed
+      // point.
       const Mat3 arm = in.contact_radius * skew(in.contacts[leg].n_W);
       J += arm * model.shank_jacobian(leg);
       task = -model.foot_bias(leg) - arm * model.shank_bias(leg);
@@ -58,10 +59,12 @@ void WholeBodyControl::map_legs(const WbcInput& in, const RobotModel& model) noe
   }
 }
 
-Vec6 WholeBodyControl::desired_trunk_acceleration(const WbcInput& in, const RobotModel& model) const noexcept {
+Vec6 WholeBodyControl::desired_trunk_acceleration(const WbcInput& in,
+                                                  const RobotModel& model) const noexcept {
   const BodyReference& reference = in.reference;
   const Vec3 w_error_W = reference.w_WB_W - in.state.w_WB_W();
-  const Vec3 angular_W = config_.orientation_kp * attitude_error_W(in) + config_.orientation_kd * w_error_W;
+  const Vec3 angular_W =
+      config_.orientation_kp * attitude_error_W(in) + config_.orientation_kd * w_error_W;
 
   const Vec3 kp(config_.position_kp_xy, config_.position_kp_xy, config_.position_kp_z);
   const Vec3 kd(config_.position_kd_xy, config_.position_kd_xy, config_.position_kd_z);
@@ -98,7 +101,8 @@ ContactForces WholeBodyControl::refine_forces(const WbcInput& in, const Mat6& A,
   const Vec6 a_missing = a_desired + lu.solve(b);
   PerLeg<Eigen::Matrix<double, 6, 3>> G{};
   QpSolver::Problem& qp = solver_.prepare(count);
-  const FrictionPyramid pyramid(in.n_W, limits_.friction, limits_.min_normal_force, limits_.max_normal_force);
+  const FrictionPyramid pyramid(in.n_W, limits_.friction, limits_.min_normal_force,
+                                limits_.max_normal_force);
   for (const Leg leg : kLegs) {
     if (position[leg] < 0) continue;
     const int i = position[leg];
@@ -133,8 +137,10 @@ void WholeBodyControl::joint_targets(const WbcInput& in, WbcOutput& out) const n
   const Vec3 turn_W = attitude_error_W(in);
   const Vec3 p_BG_W = state.p_WG - state.p_WB;
   Vec6 displacement, velocity;
-  displacement << reference.p_WG - state.p_WG - turn_W.cross(p_BG_W), state.R_WB.transpose() * turn_W;
-  velocity << reference.v_WG_W - reference.w_WB_W.cross(p_BG_W), state.R_WB.transpose() * reference.w_WB_W;
+  displacement << reference.p_WG - state.p_WG - turn_W.cross(p_BG_W),
+      state.R_WB.transpose() * turn_W;
+  velocity << reference.v_WG_W - reference.w_WB_W.cross(p_BG_W),
+      state.R_WB.transpose() * reference.w_WB_W;
 
   for (const Leg leg : kLegs) {
     const LegMap& m = legs_[leg];
@@ -143,7 +149,8 @@ void WholeBodyControl::joint_targets(const WbcInput& in, WbcOutput& out) const n
       foot_displacement = in.swing[leg].p_WF - state.p_WF[leg];
       foot_velocity = in.swing[leg].v_WF_W;
     }
-    out.q[leg] = state.joint_position[leg] + m.J_leg_inverse * (foot_displacement - m.J_trunk * displacement);
+    out.q[leg] = state.joint_position[leg] +
+                 m.J_leg_inverse * (foot_displacement - m.J_trunk * displacement);
     out.dq[leg] = m.J_leg_inverse * (foot_velocity - m.J_trunk * velocity);
   }
 }

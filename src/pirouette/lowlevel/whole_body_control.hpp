@@ -30,12 +30,13 @@ struct WbcOutput {
   PerLeg<Vec3> dq{};                       ///< rad/s
 };
 
-/// [Kim19], solved by legs: docs/decisions/003-whole-body-control.md, docs/equations.md#whole-body-control.
+/// [Kim19], solved by legs: docs/decisions/003-whole-body-control.md,
+/// docs/equations.md#whole-body-control.
 ///
 /// The task hierarchy contacts > trunk orientation > CoM position > swing feet has 18 rows for 18
-/// accelerations: with no leg singular it has one solution, which follows leg by leg (3x3) and one 6x6
-/// solve, the same as the null-space projections give. A small QP then trades the MPC's forces against the
-/// trunk acceleration those forces produce with contact-consistent joints.
+/// accelerations: with no leg singular it has one solution, which follows leg by leg (3x3) and one
+/// 6x6 solve, the same as the null-space projections give. A small QP then trades the MPC's forces
+/// against the trunk acceleration those forces produce with contact-consistent joints.
 class WholeBodyControl {
  public:
   WholeBodyControl(const WbcConfig& config, const MpcConfig& limits);
@@ -49,16 +50,17 @@ class WholeBodyControl {
 
   /// A leg's joint acceleration as an affine function of the trunk's: c - D a.
   struct LegMap {
-    Mat36 J_trunk;      ///< task Jacobian, trunk columns
-    Mat3 J_leg;         ///< task Jacobian, the leg's own columns
-    Mat3 J_leg_inverse; ///< damped near singularities
+    Mat36 J_trunk;       ///< task Jacobian, trunk columns
+    Mat3 J_leg;          ///< task Jacobian, the leg's own columns
+    Mat3 J_leg_inverse;  ///< damped near singularities
     Vec3 c;
     Mat36 D;
   };
 
   void map_legs(const WbcInput& in, const RobotModel& model) noexcept;
   Vec6 desired_trunk_acceleration(const WbcInput& in, const RobotModel& model) const noexcept;
-  ContactForces refine_forces(const WbcInput& in, const Mat6& A, const Vec6& b, const Vec6& a_desired) noexcept;
+  ContactForces refine_forces(const WbcInput& in, const Mat6& A, const Vec6& b,
+                              const Vec6& a_desired) noexcept;
   void joint_targets(const WbcInput& in, WbcOutput& out) const noexcept;
 
   WbcConfig config_;

@@ -30,8 +30,8 @@ Vec3 vec3(const mjtNum* p) { return Vec3(p[0], p[1], p[2]); }
 int shank_body(const RobotMap& map, Leg leg) { return map.legs[leg].body[2]; }
 
 /// Lengths of one leg from the kinematics at q = 0, trunk at the world's origin.
-LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg, const std::string& file,
-                          std::string_view leg_name, Errors& errors) {
+LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
+                          const std::string& file, std::string_view leg_name, Errors& errors) {
   constexpr double kStraight = 1e-4;  // m, tolerance on "straight down at q = 0"
   const Vec3 abad = vec3(d.xanchor + 3 * leg.joint[0]);
   const Vec3 hip = vec3(d.xanchor + 3 * leg.joint[1]);
@@ -52,12 +52,14 @@ LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg, 
     g.q_min(j) = m.jnt_range[2 * joint];
     g.q_max(j) = m.jnt_range[2 * joint + 1];
   }
-  const bool straight = std::abs(hip.z() - abad.z()) < kStraight && std::abs(knee.x() - hip.x()) < kStraight &&
+  const bool straight = std::abs(hip.z() - abad.z()) < kStraight &&
+                        std::abs(knee.x() - hip.x()) < kStraight &&
                         std::abs(foot.x() - hip.x()) < kStraight && g.thigh > 0.0 && g.shank > 0.0;
   if (!straight) {
-    errors.push_back({file, 0, std::string(leg_name),
-                      "the leg must hang straight down at zero joint angles: hip, knee and foot one below the "
-                      "other, the hip axis level with the abad axis"});
+    errors.push_back(
+        {file, 0, std::string(leg_name),
+         "the leg must hang straight down at zero joint angles: hip, knee and foot one below the "
+         "other, the hip axis level with the abad axis"});
   }
   return g;
 }
@@ -87,7 +89,8 @@ struct RobotModel::Impl {
     qpos[0] = p_WB.x(), qpos[1] = p_WB.y(), qpos[2] = p_WB.z();
     qpos[3] = quat.w(), qpos[4] = quat.x(), qpos[5] = quat.y(), qpos[6] = quat.z();
     for (const Leg leg : kLegs) {
-      for (size_t j = 0; j < kJointsPerLeg; ++j) d->qpos[map.legs[leg].qpos[j]] = q[leg](static_cast<int>(j));
+      for (size_t j = 0; j < kJointsPerLeg; ++j)
+        d->qpos[map.legs[leg].qpos[j]] = q[leg](static_cast<int>(j));
     }
     mj_kinematics(m.get(), d.get());
     mj_comPos(m.get(), d.get());
@@ -107,15 +110,18 @@ Result<RobotModel> RobotModel::load(const std::string& mjcf) {
   if (!spec) return Error{mjcf, 0, "", std::string("not a readable MJCF file: ") + message.data()};
   auto impl = std::make_unique<Impl>();
   impl->m.reset(mj_compile(spec.get(), nullptr));
-  if (!impl->m) return Error{mjcf, 0, "", std::string("MuJoCo cannot compile it: ") + mjs_getError(spec.get())};
+  if (!impl->m)
+    return Error{mjcf, 0, "", std::string("MuJoCo cannot compile it: ") + mjs_getError(spec.get())};
   mjModel& m = *impl->m;
 
   Result<RobotMap> map = map_robot(m, mjcf);
   if (!map.ok()) return map.errors();
   impl->map = map.value();
   if (m.nv != kDof) {
-    return Error{mjcf, 0, "",
-                 "has " + std::to_string(m.nv) + " degrees of freedom; expected 18: a free trunk and four legs of three joints"};
+    return Error{
+        mjcf, 0, "",
+        "has " + std::to_string(m.nv) +
+            " degrees of freedom; expected 18: a free trunk and four legs of three joints"};
   }
   m.opt.gravity[0] = m.opt.gravity[1] = 0.0;
   m.opt.gravity[2] = -kGravity;
@@ -124,7 +130,8 @@ Result<RobotModel> RobotModel::load(const std::string& mjcf) {
 
   for (int i = 0; i < 6; ++i) impl->dof[static_cast<size_t>(i)] = impl->map.trunk_dof + i;
   for (const Leg leg : kLegs) {
-    for (size_t j = 0; j < kJointsPerLeg; ++j) impl->dof[6 + 3 * index(leg) + j] = impl->map.legs[leg].dof[j];
+    for (size_t j = 0; j < kJointsPerLeg; ++j)
+      impl->dof[6 + 3 * index(leg) + j] = impl->map.legs[leg].dof[j];
   }
 
   impl->set_pose(Vec3::Zero(), Mat3::Identity(), {});
@@ -169,8 +176,9 @@ void RobotModel::update(const RobotState& state) noexcept {
   mjModel* m = s.m.get();
   mjData* d = s.d.get();
   s.set_pose(state.p_WB, state.R_WB, state.joint_position);
-  s.nu << state.v_WB_W, state.w_WB_B, state.joint_velocity[Leg::kFR], state.joint_velocity[Leg::kFL],
-      state.joint_velocity[Leg::kRR], state.joint_velocity[Leg::kRL];
+  s.nu << state.v_WB_W, state.w_WB_B, state.joint_velocity[Leg::kFR],
+      state.joint_velocity[Leg::kFL], state.joint_velocity[Leg::kRR],
+      state.joint_velocity[Leg::kRL];
   for (int i = 0; i < kDof; ++i) d->qvel[s.dof[static_cast<size_t>(i)]] = s.nu(i);
   mj_makeM(m, d);
   mj_comVel(m, d);
@@ -185,7 +193,8 @@ void RobotModel::update(const RobotState& state) noexcept {
       s.M(row, column) = full(s.dof[static_cast<size_t>(row)], s.dof[static_cast<size_t>(column)]);
     }
   }
-  // The trunk's translational rows are Newton's law of the whole robot: m J_com dnu + m (Jdot nu + g) = forces.
+  // The trunk's translational rows are Newton's law of the whole robot: m J_com dnu + m (Jdot nu +
+  // g) = forces.
   s.p_WG = vec3(d->subtree_com + 3 * s.map.trunk_body);
   s.J_com = s.M.topRows<3>() / s.mass;
   s.com_bias = s.h.head<3>() / s.mass - Vec3(0.0, 0.0, kGravity);

@@ -28,7 +28,7 @@ class RobotModel {
   RobotModel& operator=(RobotModel&&) noexcept;
   ~RobotModel();
 
-  double mass() const;                        ///< kg
+  double mass() const;  ///< kg
   const PerLeg<LegGeometry>& legs() const;
   /// kg m^2, of the whole robot about its CoM, trunk axes, at joint angles `q`.
   Mat3 inertia(const PerLeg<Vec3>& q);
@@ -38,16 +38,16 @@ class RobotModel {
   /// Evaluates everything below at `state` (trunk pose and velocity, joints). No allocation.
   void update(const RobotState& state) noexcept;
 
-  Vec3 p_WG() const;    ///< m
-  Vec3 v_WG_W() const;  ///< m/s
-  const MatDof& mass_matrix() const;           ///< with the rotors' reflected inertia
-  const VecDof& bias() const;                  ///< N, N m: Coriolis, centrifugal and gravity
-  const Jacobian& com_jacobian() const;        ///< v_WG_W = J nu
-  const Vec3& com_bias() const;                ///< m/s^2: Jdot nu of the CoM
-  const Jacobian& foot_jacobian(Leg leg) const;     ///< sphere centre: v_WF_W = J nu
-  const Jacobian& shank_jacobian(Leg leg) const;    ///< w_WS_W = J nu
-  const Vec3& foot_bias(Leg leg) const;        ///< m/s^2: Jdot nu of the sphere centre
-  const Vec3& shank_bias(Leg leg) const;       ///< rad/s^2: Jdot nu of the shank's angular velocity
+  Vec3 p_WG() const;                              ///< m
+  Vec3 v_WG_W() const;                            ///< m/s
+  const MatDof& mass_matrix() const;              ///< with the rotors' reflected inertia
+  const VecDof& bias() const;                     ///< N, N m: Coriolis, centrifugal and gravity
+  const Jacobian& com_jacobian() const;           ///< v_WG_W = J nu
+  const Vec3& com_bias() const;                   ///< m/s^2: Jdot nu of the CoM
+  const Jacobian& foot_jacobian(Leg leg) const;   ///< sphere centre: v_WF_W = J nu
+  const Jacobian& shank_jacobian(Leg leg) const;  ///< w_WS_W = J nu
+  const Vec3& foot_bias(Leg leg) const;           ///< m/s^2: Jdot nu of the sphere centre
+  const Vec3& shank_bias(Leg leg) const;  ///< rad/s^2: Jdot nu of the shank's angular velocity
 
  private:
   struct Impl;

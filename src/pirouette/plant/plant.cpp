@@ -151,7 +151,7 @@ struct Plant::Impl {
   CommandDelay command_delay;
   std::size_t steps_per_tick;
   PerLeg<Vec3> torque_scale;  ///< true over nominal torque constant: abad, hip, knee
-  bool shows_truth;  ///< the controller was configured to use it
+  bool shows_truth;           ///< the controller was configured to use it
 
   JointCommand command_in_force;
   PlantTruth truth;
@@ -170,9 +170,8 @@ void Plant::Impl::drive_motors(const JointCommand& command) {
       q[i] = data->qpos[at_leg.qpos[static_cast<std::size_t>(i)]];
       dq[i] = data->qvel[at_leg.dof[static_cast<std::size_t>(i)]];
     }
-    const Vec3 demand =
-        torque_scale[leg].cwiseProduct(wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) +
-                                       wanted.kd.cwiseProduct(wanted.dq - dq));
+    const Vec3 demand = torque_scale[leg].cwiseProduct(
+        wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) + wanted.kd.cwiseProduct(wanted.dq - dq));
     diverged = diverged || !demand.allFinite();
     if (diverged) return;
     const Vec3 torque = demand.cwiseMax(-at_leg.tau_max).cwiseMin(at_leg.tau_max);

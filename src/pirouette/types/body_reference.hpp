@@ -8,11 +8,11 @@ namespace pirouette {
 
 /// A moment of the path reference (path/): where the CoM should be if nothing had gone wrong.
 struct PathPoint {
-  Vec2 p_WG = Vec2::Zero();   ///< m
-  double yaw = 0.0;           ///< rad, unwrapped
-  Vec2 v_H = Vec2::Zero();    ///< m/s, feed-forward velocity in the reference's heading axes
-  double yaw_rate = 0.0;      ///< rad/s
-  double arc_length = 0.0;    ///< m, way along the path since its start
+  Vec2 p_WG = Vec2::Zero();  ///< m
+  double yaw = 0.0;          ///< rad, unwrapped
+  Vec2 v_H = Vec2::Zero();   ///< m/s, feed-forward velocity in the reference's heading axes
+  double yaw_rate = 0.0;     ///< rad/s
+  double arc_length = 0.0;   ///< m, way along the path since its start
 };
 
 /// The tracker's velocity command, in the robot's own heading axes.
@@ -22,12 +22,12 @@ struct TwistCommand {
 };
 
 struct BodyReference {
-  Vec3 p_WG = Vec3::Zero();     ///< m, CoM
-  Vec3 v_WG_W = Vec3::Zero();   ///< m/s, world axes
-  Vec3 a_WG_W = Vec3::Zero();   ///< m/s^2, world axes
-  RollPitchYaw rpy;             ///< rad, parallel to the terrain; yaw unwrapped
-  Vec3 w_WB_W = Vec3::Zero();   ///< rad/s, world axes, matching roll and pitch on a slope (E16)
-  TwistCommand twist;           ///< carried over the MPC's horizon
+  Vec3 p_WG = Vec3::Zero();    ///< m, CoM
+  Vec3 v_WG_W = Vec3::Zero();  ///< m/s, world axes
+  Vec3 a_WG_W = Vec3::Zero();  ///< m/s^2, world axes
+  RollPitchYaw rpy;            ///< rad, parallel to the terrain; yaw unwrapped
+  Vec3 w_WB_W = Vec3::Zero();  ///< rad/s, world axes, matching roll and pitch on a slope (E16)
+  TwistCommand twist;          ///< carried over the MPC's horizon
 };
 
 }  // namespace pirouette

@@ -7,9 +7,9 @@
 namespace pirouette {
 
 struct FootState {
-  Vec3 p_BF = Vec3::Zero();    ///< m, sphere centre in trunk axes
-  Vec3 v_BF_B = Vec3::Zero();  ///< m/s, of the sphere centre relative to the trunk, trunk axes
-  Vec3 w_BS_B = Vec3::Zero();  ///< rad/s, of the shank S relative to the trunk, trunk axes
+  Vec3 p_BF = Vec3::Zero();      ///< m, sphere centre in trunk axes
+  Vec3 v_BF_B = Vec3::Zero();    ///< m/s, of the sphere centre relative to the trunk, trunk axes
+  Vec3 w_BS_B = Vec3::Zero();    ///< rad/s, of the shank S relative to the trunk, trunk axes
   Mat3 R_BS = Mat3::Identity();  ///< shank orientation in trunk axes
 };
 

@@ -14,8 +14,8 @@ struct LegPhase {
 };
 
 struct GaitPhase {
-  bool walking = false;   ///< false: all four feet stay down
-  double cycle = 0.0;     ///< in [0, 1): position in the stride of the whole gait
+  bool walking = false;          ///< false: all four feet stay down
+  double cycle = 0.0;            ///< in [0, 1): position in the stride of the whole gait
   double stance_duration = 0.0;  ///< s, of one leg
   double swing_duration = 0.0;   ///< s, of one leg
   PerLeg<LegPhase> leg{};

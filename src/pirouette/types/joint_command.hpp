@@ -1,4 +1,5 @@
-// What the controller sends to the joints: tau_motor = tau + kp (q - q_measured) + kd (dq - dq_measured).
+// What the controller sends to the joints: tau_motor = tau + kp (q - q_measured) + kd (dq -
+// dq_measured).
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -18,12 +19,12 @@ using JointCommand = PerLeg<LegCommand>;
 
 /// What the controller is doing, and why it stopped if it did.
 enum class ControllerStatus : int {
-  kStanding = 0,        ///< on four feet
+  kStanding = 0,  ///< on four feet
   kWalking = 1,
-  kFallen = 2,          ///< roll, pitch or height out of bounds: damped stand-down
-  kBadInput = 3,        ///< a sensor value was not finite for too long: damped stand-down
-  kSolverFailed = 4,    ///< MPC or WBC failed too often in a row: damped stand-down
-  kBadCommand = 5,      ///< the computed command was not finite: damped stand-down
+  kFallen = 2,        ///< roll, pitch or height out of bounds: damped stand-down
+  kBadInput = 3,      ///< a sensor value was not finite for too long: damped stand-down
+  kSolverFailed = 4,  ///< MPC or WBC failed too often in a row: damped stand-down
+  kBadCommand = 5,    ///< the computed command was not finite: damped stand-down
 };
 
 /// True for every status that latches the damped stand-down.

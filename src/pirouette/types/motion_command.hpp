@@ -10,13 +10,16 @@ namespace pirouette {
 /// A planar twist of the CoM in heading axes. Zero velocity and a yaw rate: a spin. Zero twist with
 /// `walk`: trotting on the spot. The signed turning radius is velocity.x / yaw_rate.
 struct MotionCommand {
-  bool walk = false;            ///< false: stand on four feet
-  Vec2 v_H = Vec2::Zero();      ///< m/s, in heading axes
-  double yaw_rate = 0.0;        ///< rad/s
-  std::optional<Vec2> point;    ///< m, world: where the reference starts; absent: where the CoM stands when walking begins
-  std::optional<double> heading;  ///< rad, world: heading of the reference at its start; absent: the robot's own
-  /// On a path (SpinController::follow) the length of v_H is the speed along it and the direction of v_H that of the
-  /// path in the body; yaw_rate has no say. The body turns with the path, or else keeps its heading.
+  bool walk = false;          ///< false: stand on four feet
+  Vec2 v_H = Vec2::Zero();    ///< m/s, in heading axes
+  double yaw_rate = 0.0;      ///< rad/s
+  std::optional<Vec2> point;  ///< m, world: where the reference starts; absent: where the CoM
+                              ///< stands when walking begins
+  std::optional<double>
+      heading;  ///< rad, world: heading of the reference at its start; absent: the robot's own
+  /// On a path (SpinController::follow) the length of v_H is the speed along it and the direction
+  /// of v_H that of the path in the body; yaw_rate has no say. The body turns with the path, or
+  /// else keeps its heading.
   bool hold_heading = false;
 };
 

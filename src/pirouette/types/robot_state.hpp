@@ -9,9 +9,9 @@ namespace pirouette {
 
 /// G is the whole-body centre of mass; F a foot's sphere centre; B the trunk frame; W the world.
 struct RobotState {
-  double time = 0.0;              ///< s
-  Vec3 p_WB = Vec3::Zero();       ///< m
-  Vec3 v_WB_W = Vec3::Zero();     ///< m/s, world axes
+  double time = 0.0;           ///< s
+  Vec3 p_WB = Vec3::Zero();    ///< m
+  Vec3 v_WB_W = Vec3::Zero();  ///< m/s, world axes
   Mat3 R_WB = Mat3::Identity();
   RollPitchYaw rpy;               ///< rad; yaw is unwrapped
   Vec3 w_WB_B = Vec3::Zero();     ///< rad/s, body axes

@@ -10,26 +10,27 @@ namespace pirouette {
 
 /// Pose and velocity of the trunk frame B in the world W.
 struct BasePose {
-  Vec3 p_WB = Vec3::Zero();       ///< m
+  Vec3 p_WB = Vec3::Zero();  ///< m
   Mat3 R_WB = Mat3::Identity();
 };
 
 /// The simulator's truth about the trunk. Read only with estimation.source = "truth", for studies.
 struct BaseTruth {
-  Vec3 p_WB = Vec3::Zero();    ///< m
+  Vec3 p_WB = Vec3::Zero();  ///< m
   Mat3 R_WB = Mat3::Identity();
   Vec3 v_WB_W = Vec3::Zero();  ///< m/s, world axes
   Vec3 w_WB_B = Vec3::Zero();  ///< rad/s, body axes
 };
 
 struct SensorReading {
-  double time = 0.0;                  ///< s since the robot was switched on
-  PerLeg<Vec3> joint_position{};      ///< rad: abad, hip, knee
-  PerLeg<Vec3> joint_velocity{};      ///< rad/s
-  Vec3 specific_force_B = Vec3::Zero();  ///< m/s^2, accelerometer in body axes: (0, 0, +g) at rest on the flat
-  Vec3 w_WB_B = Vec3::Zero();         ///< rad/s, gyro in body axes
+  double time = 0.0;              ///< s since the robot was switched on
+  PerLeg<Vec3> joint_position{};  ///< rad: abad, hip, knee
+  PerLeg<Vec3> joint_velocity{};  ///< rad/s
+  Vec3 specific_force_B =
+      Vec3::Zero();  ///< m/s^2, accelerometer in body axes: (0, 0, +g) at rest on the flat
+  Vec3 w_WB_B = Vec3::Zero();                ///< rad/s, gyro in body axes
   std::optional<PerLeg<bool>> foot_contact;  ///< absent where the robot has no contact sensing
-  std::optional<BaseTruth> truth;     ///< absent on a real robot
+  std::optional<BaseTruth> truth;            ///< absent on a real robot
 };
 
 }  // namespace pirouette

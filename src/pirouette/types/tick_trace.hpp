@@ -1,4 +1,5 @@
-// Everything one control tick computed. The log holds it, so that a stage can be replayed in a test.
+// Everything one control tick computed. The log holds it, so that a stage can be replayed in a
+// test.
 #pragma once
 
 #include "pirouette/types/body_reference.hpp"
@@ -43,8 +44,9 @@ struct TickTrace {
   ContactForces wbc;
   JointCommand command;
 
-  /// Calls visit(name, unit, meaning, value) for each logged column; value is a double, int, bool, Vec2,
-  /// Vec3 or a PerLeg of one of them. The trace file, its documentation and the tests walk this list.
+  /// Calls visit(name, unit, meaning, value) for each logged column; value is a double, int, bool,
+  /// Vec2, Vec3 or a PerLeg of one of them. The trace file, its documentation and the tests walk
+  /// this list.
   template <class Visit>
   static void columns(const TickTrace& t, Visit&& visit);
 };
@@ -63,7 +65,8 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   using detail::per_leg;
   const auto rpy = [](const RollPitchYaw& a) { return Vec3(a.roll, a.pitch, a.yaw); };
   visit("time", "s", "time of the sensor reading", t.sensors.time);
-  visit("status", "1", "0 standing, 1 walking, 2 fallen, 3 bad input, 4 solver failed, 5 bad command",
+  visit("status", "1",
+        "0 standing, 1 walking, 2 fallen, 3 bad input, 4 solver failed, 5 bad command",
         static_cast<int>(t.status));
   visit("joint_position", "rad", "measured abad, hip, knee", t.sensors.joint_position);
   visit("joint_velocity", "rad/s", "measured", t.sensors.joint_velocity);
@@ -76,15 +79,19 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit("com_velocity", "m/s", "estimate of v_WG_W", t.state.v_WG_W);
   visit("foot_position", "m", "estimate of p_WF, sphere centres", t.state.p_WF);
   visit("contact", "1", "foot may push", per_leg(t.contacts, [](auto& c) { return c.in_contact; }));
-  visit("contact_measured", "1", "foot touches", per_leg(t.contacts, [](auto& c) { return c.measured; }));
-  visit("contact_point", "m", "p_WC of the foot model", per_leg(t.contacts, [](auto& c) { return c.p_WC; }));
-  visit("contact_normal", "1", "n_W of the foot model", per_leg(t.contacts, [](auto& c) { return c.n_W; }));
+  visit("contact_measured", "1", "foot touches",
+        per_leg(t.contacts, [](auto& c) { return c.measured; }));
+  visit("contact_point", "m", "p_WC of the foot model",
+        per_leg(t.contacts, [](auto& c) { return c.p_WC; }));
+  visit("contact_normal", "1", "n_W of the foot model",
+        per_leg(t.contacts, [](auto& c) { return c.n_W; }));
   visit("rolling_velocity", "m/s", "of the sphere centre, rolling without slip",
         per_leg(t.contacts, [](auto& c) { return c.v_WF_rolling_W; }));
   visit("plane", "m, 1, 1", "terrain plane a0, a1, a2", Vec3(t.plane.a0, t.plane.a1, t.plane.a2));
   visit("plane_residual", "m", "rms of the contacts about the plane", t.plane.residual_rms);
   visit("stance", "1", "scheduled stance", per_leg(t.gait.leg, [](auto& p) { return p.stance; }));
-  visit("phase_progress", "1", "share of stance or swing", per_leg(t.gait.leg, [](auto& p) { return p.progress; }));
+  visit("phase_progress", "1", "share of stance or swing",
+        per_leg(t.gait.leg, [](auto& p) { return p.progress; }));
   visit("path_position", "m", "path reference of the CoM", t.path.p_WG);
   visit("path_yaw", "rad", "path reference, unwrapped", t.path.yaw);
   visit("path_yaw_rate", "rad/s", "path reference", t.path.yaw_rate);
@@ -92,18 +99,22 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit("twist_velocity_H", "m/s", "tracker's command, heading axes", t.twist.v_H);
   visit("twist_yaw_rate", "rad/s", "tracker's command", t.twist.yaw_rate);
   visit("tracker_integral_H", "m/s", "body-frame integrator", t.integral_H);
-  visit("foothold", "m", "next contact points", per_leg(t.footholds, [](auto& f) { return f.p_WC; }));
+  visit("foothold", "m", "next contact points",
+        per_leg(t.footholds, [](auto& f) { return f.p_WC; }));
   visit("com_plan", "m", "horizontal CoM target of the planner", t.com_plan.p_WG);
   visit("psp_weight", "1", "vertex weights", t.psp_weight);
   visit("reference_position", "m", "CoM reference of MPC and WBC", t.reference.p_WG);
   visit("reference_velocity", "m/s", "CoM reference of MPC and WBC", t.reference.v_WG_W);
   visit("reference_rpy", "rad", "trunk reference", rpy(t.reference.rpy));
-  visit("swing_position", "m", "swing target p_WF", per_leg(t.swing, [](auto& s) { return s.p_WF; }));
+  visit("swing_position", "m", "swing target p_WF",
+        per_leg(t.swing, [](auto& s) { return s.p_WF; }));
   visit("force_mpc", "N", "planned ground reactions", t.mpc.f_W);
   visit("force_wbc", "N", "refined ground reactions", t.wbc.f_W);
-  visit("mpc_status", "1", "0 unconstrained, 1 constrained, 2 failed: the last good one held", static_cast<int>(t.mpc.status));
+  visit("mpc_status", "1", "0 unconstrained, 1 constrained, 2 failed: the last good one held",
+        static_cast<int>(t.mpc.status));
   visit("mpc_iterations", "1", "of the active-set solver", t.mpc.iterations);
-  visit("wbc_status", "1", "0 unconstrained, 1 constrained, 2 failed: the last good one held", static_cast<int>(t.wbc.status));
+  visit("wbc_status", "1", "0 unconstrained, 1 constrained, 2 failed: the last good one held",
+        static_cast<int>(t.wbc.status));
   visit("command_position", "rad", "", per_leg(t.command, [](auto& c) { return c.q; }));
   visit("command_velocity", "rad/s", "", per_leg(t.command, [](auto& c) { return c.dq; }));
   visit("command_torque", "N m", "feed-forward", per_leg(t.command, [](auto& c) { return c.tau; }));
