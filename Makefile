@@ -88,12 +88,6 @@ config: build  ## config/default.toml and docs/parameters.md from src/pirouette/
 	@cp $(BUILD)/default.toml config/
 	@cp $(BUILD)/parameters.md docs/
 
-.PHONY: bench
-bench: setup  ## cost of a control tick and its parts
-	@$(CONFIGURE) -DPIROUETTE_BENCH=ON > /dev/null
-	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_bench
-	@$(BUILD)/bench/pirouette_bench $(ARGS)
-
 .PHONY: install
 install: setup  ## program, libraries and data to PREFIX=/usr/local
 	@$(CONFIGURE) -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) > /dev/null
