@@ -8,11 +8,13 @@ WERROR ?= OFF
 PREFIX ?= /usr/local
 JOBS ?= $(shell nproc)
 ARGS ?=
+RUN ?=
 
 BIN := $(CURDIR)/.venv/bin
 BUILD := build/$(PRESET)
 PIROUETTE := $(BUILD)/pirouette
 CMAKE := $(BIN)/cmake
+PYTHON := PYTHONPATH=$(CURDIR)/python $(BIN)/python
 CONFIGURE := $(CMAKE) --preset $(PRESET) --log-level=WARNING \
     -DPIROUETTE_WERROR=$(WERROR) -DPIROUETTE_BENCH=OFF
 
@@ -21,7 +23,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 .PHONY: help
 help:  ## this list
 	@echo 'usage: make TARGET [PRESET=release|dev|asan-ubsan] [WERROR=ON] [JOBS=N]'
-	@awk -F ':.*## *' '/^[a-z-]+:.*##/ {printf "  %-10s %s\n", $$1, $$2}' Makefile
+	@awk -F ':.*## *' '/^[a-z-]+:.*##/ {printf "  %-12s %s\n", $$1, $$2}' Makefile
 
 .PHONY: setup
 setup: .venv/setup.stamp  ## wheels into .venv and, with apt-get, the missing system packages
@@ -46,6 +48,17 @@ build: configure  ## the program, build/release/pirouette
 spin: build  ## one spin in simulation; ARGS='--rate 0.7 --terrain slope:10'
 	@$(PIROUETTE) spin $(ARGS)
 
+.PHONY: report
+report: setup  ## HTML page about a run, with plots and a 3D replay; RUN=FOLDER [the latest of runs/]
+	@run='$(RUN)'; run=$${run:-$$(ls -td runs/*/ 2>/dev/null | head -1)}; \
+	test -n "$$run" || { echo 'report: no run in runs/; make spin first'; exit 2; }; \
+	$(PYTHON) -m pirouette.report $$run $(ARGS)
+
+.PHONY: images
+images: build  ## docs/images/spin.png, the picture of the README
+	@$(PIROUETTE) spin --quiet --out build/images/spin
+	@$(PYTHON) -m pirouette.picture build/images/spin docs/images/spin.png
+
 .PHONY: reproduce
 reproduce: build  ## the paper's figures: tables and plots in reports/; what is finished there is kept
 	@$(PIROUETTE) reproduce all --jobs $(JOBS) --out reports $(ARGS)
@@ -56,6 +69,16 @@ test: configure  ## every test; wrong formatting and warnings fail it with WERRO
 	@bash scripts/check_format.sh || test $(WERROR) = OFF
 	@$(CMAKE) --build $(BUILD) --parallel $(JOBS)
 	@$(BIN)/ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --progress
+
+.PHONY: test-python
+test-python: build .venv/test.stamp  ## tests of report and export, some in a headless Chromium
+	@bash scripts/system_packages.sh chromium chromium-driver
+	@$(PYTHON) -m pytest --quiet $(ARGS)
+
+.venv/test.stamp: requirements-test.txt | .venv/setup.stamp
+	@echo 'setup: wheels of requirements-test.txt into .venv'
+	@$(BIN)/pip install --quiet --requirement requirements-test.txt
+	@touch $@
 
 .PHONY: check
 check: check-format lint  ## formatting and clang-tidy

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs the Debian or Ubuntu packages that the wheels do not carry, if any is missing.
-# Without the right to install, prints the line to run and fails.
+# Installs the Debian or Ubuntu packages that the wheels do not carry, or those that are named as
+# arguments, if any is missing. Without the right to install, prints the line to run and fails.
 set -euo pipefail
 
 packages=(
@@ -12,6 +12,7 @@ packages=(
 )
 # A Python without ensurepip cannot make an environment.
 python3 -c 'import ensurepip' 2>/dev/null || packages+=(python3-venv)
+[ $# = 0 ] || packages=("$@")
 
 if ! command -v dpkg-query >/dev/null; then
   echo "setup: not a Debian system; install the equivalents of: ${packages[*]}"

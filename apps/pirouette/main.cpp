@@ -4,12 +4,17 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include "config_command.hpp"
 #include "exit_code.hpp"
+#include "pirouette/config/validate.hpp"
 #include "pirouette/experiment/trial.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
@@ -62,11 +67,37 @@ bool has_verb(const CLI::App& app, const std::string& verb) {
                      [&](const CLI::App* command) { return command->check_name(verb); });
 }
 
+/// Becomes the module of the source tree's Python package; returns only when there is none.
+void run_module(const std::string& verb, char** arguments) {
+  namespace fs = std::filesystem;
+  const fs::path root = data_dir();
+  std::string python = (root / ".venv" / "bin" / "python").string();
+  if (!fs::exists(root / "python" / "pirouette" / verb / "__main__.py") || !fs::exists(python)) {
+    return;
+  }
+  ::setenv("PYTHONPATH", (root / "python").c_str(), 1);
+  std::string flag = "-m", module = "pirouette." + verb;
+  std::vector<char*> line = {python.data(), flag.data(), module.data()};
+  while (*++arguments != nullptr) line.push_back(*arguments);
+  line.push_back(nullptr);
+  ::execv(python.c_str(), line.data());
+}
+
 /// Becomes the program `pirouette-<verb>`; returns only when there is none.
 int run_external(const CLI::App& app, char** arguments) {
+  constexpr std::array kPythonVerbs = {"report", "export"};
   const std::string verb = arguments[0];
   const std::string program = "pirouette-" + verb;
-  if (verb.find('/') == verb.npos) ::execvp(program.c_str(), arguments);
+  if (verb.find('/') == verb.npos) {
+    ::execvp(program.c_str(), arguments);
+    run_module(verb, arguments);
+  }
+  if (std::find(kPythonVerbs.begin(), kPythonVerbs.end(), verb) != kPythonVerbs.end()) {
+    return report({{"", 0, "",
+                    verb + ": no program " + program +
+                        " on PATH; it comes with the Python package: run `make setup` or `pip "
+                        "install .` in the source tree"}});
+  }
   std::string verbs;
   for (const CLI::App* command : app.get_subcommands({})) {
     verbs += (verbs.empty() ? "" : ", ") + command->get_name();

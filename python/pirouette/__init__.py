@@ -1,1 +1,3 @@
-"""Pictures of pirouette's run folders."""
+"""Reports, exports and pictures of the runs that the program `pirouette` writes."""
+
+__version__ = "0.1.0"

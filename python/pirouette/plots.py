@@ -19,9 +19,9 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-MM = 1e3
+from pirouette.signals import CUTOFF, MM, accelerations  # noqa: E402
+
 RECORD = 10.0  # s, of figure 7
-CUTOFF = 20.0  # Hz, as in the metrics
 RADII = [0.5, 1, 2, 5, 10, 20, 50, 100]  # mm, marked on the axis
 
 # Okabe and Ito: told apart with any colour vision. Line styles say the same again, for print.
@@ -84,26 +84,6 @@ def place(entry: dict) -> str:
     )
 
 
-def low_pass(x: np.ndarray, rate: float) -> np.ndarray:
-    """Second-order Butterworth forwards and backwards, by its gain."""
-    frequency = np.fft.rfftfreq(len(x), 1.0 / rate)
-    return np.fft.irfft(np.fft.rfft(x) / (1.0 + (frequency / CUTOFF) ** 4), len(x))
-
-
-def accelerations(rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Of the trunk: linear along world x, y (m/s^2) and angular about body x, y (rad/s^2), shape (n, 2)."""
-    rate = 1.0 / np.median(np.diff(rows["time"]))
-
-    def derivative(x: np.ndarray) -> np.ndarray:
-        return np.stack(
-            [low_pass(np.gradient(x[:, i]) * rate, rate) for i in range(2)], axis=1
-        )
-
-    return derivative(rows["true_base_velocity"]), derivative(
-        rows["true_angular_velocity_B"]
-    )
-
-
 def add_legend(figure: plt.Figure, axes: plt.Axes) -> None:
     """One legend for all panels, below them."""
     handles, labels = axes.get_legend_handles_labels()
@@ -143,11 +123,7 @@ def draw_paths(axes: plt.Axes, report: dict, folder: Path, look: Style) -> str:
 
 def draw_radii(axes: plt.Axes, report: dict, profile: str, look: Style) -> None:
     metric = "com.radius_mean_mm"
-    entries = [
-        e
-        for e in report["entries"]
-        if e["profile"] == profile and metric in e["metrics"]
-    ]
+    entries = [e for e in report["entries"] if e["profile"] == profile and metric in e["metrics"]]
     for label in dict.fromkeys(e["label"] for e in entries):
         own = [e for e in entries if e["label"] == label]
         x = [e["torsional_friction"] for e in own]
@@ -182,9 +158,7 @@ def draw_radii(axes: plt.Axes, report: dict, profile: str, look: Style) -> None:
             color=style["color"],
         )
     ticks = sorted({e["torsional_friction"] for e in entries})
-    axes.set(
-        xscale="log", yscale="log", xlabel="torsional friction, m", ylabel="radius, mm"
-    )
+    axes.set(xscale="log", yscale="log", xlabel="torsional friction, m", ylabel="radius, mm")
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
     axes.set_yticks(RADII, [f"{r:g}" for r in RADII])
     axes.minorticks_off()
@@ -216,25 +190,19 @@ def draw_fig7(report: dict, folder: Path) -> plt.Figure:
         (
             "x, mm",
             lambda rows: MM
-            * (
-                rows["true_com_position"][:, 0] - rows["true_com_position"][:, 0].mean()
-            ),
+            * (rows["true_com_position"][:, 0] - rows["true_com_position"][:, 0].mean()),
         ),
         (
             "y, mm",
             lambda rows: MM
-            * (
-                rows["true_com_position"][:, 1] - rows["true_com_position"][:, 1].mean()
-            ),
+            * (rows["true_com_position"][:, 1] - rows["true_com_position"][:, 1].mean()),
         ),
         ("x velocity, mm/s", lambda rows: MM * rows["true_com_velocity"][:, 0]),
         ("y velocity, mm/s", lambda rows: MM * rows["true_com_velocity"][:, 1]),
         ("roll, rad", lambda rows: rows["true_rpy"][:, 0]),
         ("pitch, rad", lambda rows: rows["true_rpy"][:, 1]),
     ]
-    figure, panels = plt.subplots(
-        3, 2, figsize=(10.0, 7.5), sharex=True, layout="constrained"
-    )
+    figure, panels = plt.subplots(3, 2, figsize=(10.0, 7.5), sharex=True, layout="constrained")
     title = "no traces kept"
     for entry, rows in traced(report, folder):
         record = rows[rows["time"] <= rows["time"][0] + RECORD]

@@ -1,0 +1,40 @@
+"""What the command-line programs share: errors in one line, files whole or not at all."""
+
+import os
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from pirouette.run_folder import RunError
+
+DONE, BAD_USAGE = 0, 2  # exit codes, as those of the C++ program
+
+
+def run(body: Callable[[], None]) -> int:
+    """Exit code of `body`; what it raises about its input becomes one line on stderr."""
+    try:
+        body()
+    except RunError as error:
+        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+        return BAD_USAGE
+    except ImportError as error:
+        print(f"error: {error}; `make setup` or `pip install .` installs it", file=sys.stderr)
+        return BAD_USAGE
+    except OSError as error:
+        print(f"error: {error.filename or 'file'}: {error.strerror}", file=sys.stderr)
+        return BAD_USAGE
+    return DONE
+
+
+@contextmanager
+def whole_file(out: Path) -> Iterator[Path]:
+    """A path beside `out` to write to; it becomes `out` at the end, and vanishes after an error."""
+    if not out.parent.is_dir():
+        raise RunError(f"{out}: cannot be written, there is no folder {out.parent}")
+    part = out.with_name(f".{out.stem}.part-{os.getpid()}{out.suffix}")
+    try:
+        yield part
+        part.replace(out)
+    finally:
+        part.unlink(missing_ok=True)

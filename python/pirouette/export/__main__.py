@@ -1,0 +1,5 @@
+import sys
+
+from pirouette.export import main
+
+sys.exit(main())

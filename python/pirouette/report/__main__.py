@@ -1,0 +1,5 @@
+import sys
+
+from pirouette.report import main
+
+sys.exit(main())

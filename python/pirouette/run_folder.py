@@ -1,0 +1,159 @@
+"""A run folder in memory: run.toml, metrics.json, trace.npy and, if there, terrain.npy."""
+
+import json
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from pirouette import __version__
+from pirouette.ground import Ground
+
+LEGS = ("FR", "FL", "RR", "RL")  # order of every per-leg column of the trace
+SHORTEST_RECORD = 1.0  # s
+LEAST_COLUMNS = (
+    "time",
+    "path_position",
+    "true_base_position",
+    "true_base_velocity",
+    "true_rpy",
+    "true_angular_velocity_B",
+    "true_com_position",
+    "true_com_velocity",
+    "true_joint_position",
+)
+
+
+class RunError(Exception):
+    """A folder that cannot be read; the text names the file and what is wrong with it."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """One simulated trial. Rows of `trace` are as `pirouette config trace` lists them."""
+
+    folder: Path
+    config: dict  # run.toml
+    metrics: dict  # metrics.json
+    trace: np.ndarray  # structured, one row a sample
+    ground: Ground
+
+    @property
+    def name(self) -> str:
+        return self.folder.name
+
+    @property
+    def context(self) -> dict:
+        return self.metrics["context"]
+
+    @property
+    def record_start(self) -> float:
+        """Time (s) of the first sample that the metrics count."""
+        start = self.config["gait"]["stand_time"] + self.config["run"]["settle_time"]
+        first, last = self.trace["time"][[0, -1]]
+        return float(start if start < last - SHORTEST_RECORD else first)
+
+    @property
+    def record(self) -> np.ndarray:
+        """The rows that the metrics count; all of them if the robot fell before."""
+        return self.trace[self.trace["time"] >= self.record_start]
+
+    @property
+    def point(self) -> np.ndarray:
+        """Commanded point in the world, m, shape (2,)."""
+        return np.array([self.context.get(key) or 0.0 for key in ("point_x", "point_y")])
+
+    @property
+    def spins(self) -> bool:
+        """Whether it is to stay at the point, rather than to walk along a path."""
+        return not any(self.context.get(key) for key in ("velocity_x", "velocity_y", "path"))
+
+    def has(self, *columns: str) -> bool:
+        return all(column in self.trace.dtype.names for column in columns)
+
+
+def load(folder: Path) -> Run:
+    """Reads and checks a run folder. Raises RunError."""
+    if not folder.is_dir():
+        raise RunError(f"{folder}: is no folder; give the folder of a run")
+    missing = [n for n in ("run.toml", "metrics.json", "trace.npy") if not (folder / n).is_file()]
+    if missing:
+        raise RunError(f"{folder}: is no run folder, {' and '.join(missing)} missing")
+    metrics = load_metrics(folder / "metrics.json")
+    config = load_config(folder / "run.toml")
+    trace = load_trace(folder / "trace.npy")
+    return Run(folder.resolve(), config, metrics, trace, load_ground(folder, metrics["context"]))
+
+
+def load_metrics(file: Path) -> dict:
+    try:
+        metrics = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise RunError(f"{file}: is no JSON: {error}") from None
+    context = metrics.get("context") if isinstance(metrics, dict) else None
+    if not isinstance(context, dict) or "version" not in context:
+        raise RunError(f"{file}: context.version is missing; a run's metrics.json has it")
+    check_version(file, str(context["version"]))
+    return metrics
+
+
+def check_version(file: Path, version: str) -> None:
+    """Refuses what a newer program has written: keys may mean something else there."""
+
+    def release(text: str) -> tuple[int, ...]:
+        return tuple(int(number) for number in text.split(".")[:2])
+
+    try:
+        newer = release(version) > release(__version__)
+    except ValueError:
+        raise RunError(f"{file}: context.version is {version!r}; expected e.g. 0.1.0") from None
+    if newer:
+        raise RunError(
+            f"{file}: context.version is {version}, newer than this program, {__version__}; "
+            "update the Python package pirouette"
+        )
+
+
+def load_config(file: Path) -> dict:
+    try:
+        config = tomllib.loads(file.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise RunError(f"{file}: is no TOML: {error}") from None
+    for section, key in (("gait", "stand_time"), ("run", "settle_time")):
+        if key not in config.get(section, {}):
+            raise RunError(f"{file}: {section}.{key} is missing")
+    if "robot" not in config:
+        raise RunError(f"{file}: robot is missing")
+    return config
+
+
+def load_trace(file: Path) -> np.ndarray:
+    try:
+        trace = np.load(file, allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        raise RunError(f"{file}: is cut or no NumPy file: {error}") from None
+    missing = [n for n in LEAST_COLUMNS if n not in (trace.dtype.names or ())]
+    if missing:
+        raise RunError(f"{file}: columns missing: {', '.join(missing)}")
+    if len(trace) < 2:
+        raise RunError(f"{file}: has {len(trace)} rows; a run has more")
+    return trace
+
+
+def load_ground(folder: Path, context: dict) -> Ground:
+    """The heights that the simulator wrote, else what the terrain's name says."""
+    file = folder / "terrain.npy"
+    if not file.is_file():
+        return Ground.named(context.get("terrain", "flat"))
+    try:
+        heights = np.load(file, allow_pickle=False)
+    except (ValueError, EOFError, OSError) as error:
+        raise RunError(f"{file}: is cut or no NumPy file: {error}") from None
+    extent = context.get("terrain_half_extent_m")
+    if heights.ndim != 2 or min(heights.shape) < 2 or not extent:
+        raise RunError(
+            f"{file}: has shape {heights.shape} and context.terrain_half_extent_m of metrics.json "
+            f"is {extent}; expected two axes and a length in m"
+        )
+    return Ground.square(heights, float(extent))
