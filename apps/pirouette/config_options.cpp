@@ -4,6 +4,9 @@
 #include <charconv>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+#include <string_view>
+#include <system_error>
 
 #include "pirouette/config/toml.hpp"
 
@@ -32,6 +35,37 @@ std::optional<std::string> pair_as_toml(const std::string& text) {
   return list + "]";
 }
 
+/// A part of --aid: a number with its unit, and the parameter in SI units that it stands for.
+struct AidPart {
+  const char* key;
+  std::string_view unit;
+  double in_si;
+};
+
+constexpr AidPart kAidParts[] = {{"plant.sensors.aid_rate", "Hz", 1.0},
+                                 {"plant.sensors.aid_noise", "mm", 1e-3},
+                                 {"plant.sensors.aid_delay", "ms", 1e-3}};
+
+/// "10Hz:5mm:50ms" as overrides; absent when it is not three finite numbers with these units.
+std::optional<std::vector<std::string>> aid_overrides(const std::string& text) {
+  std::vector<std::string> out;
+  std::string_view rest = text;
+  for (const AidPart& part : kAidParts) {
+    if (!out.empty()) {
+      if (!rest.starts_with(':')) return std::nullopt;
+      rest.remove_prefix(1);
+    }
+    double number = 0.0;
+    const auto [stop, error] = std::from_chars(rest.data(), rest.data() + rest.size(), number);
+    if (error != std::errc{} || !std::isfinite(number)) return std::nullopt;
+    rest.remove_prefix(static_cast<std::size_t>(stop - rest.data()));
+    if (!rest.starts_with(part.unit)) return std::nullopt;
+    rest.remove_prefix(part.unit.size());
+    out.push_back(part.key + ("=" + as_toml(number * part.in_si)));
+  }
+  return rest.empty() ? std::optional(out) : std::nullopt;
+}
+
 }  // namespace
 
 void ConfigOptions::add_common(CLI::App& command) {
@@ -54,9 +88,16 @@ void ConfigOptions::add_run(CLI::App& command) {
   add_shortcut(command, {"--rate", "run.rate"}, "RAD/S", "Yaw rate; positive turns left [0.7]");
   add_shortcut(command, {"--turns", "run.turns"}, "N", "Turns to record after settling [8]");
   add_shortcut(command, {"--terrain", "plant.terrain"}, "WHAT",
-               "flat, slope:10 (degrees), stairs:0.03x0.20 or rough:0.04 (m) [flat]");
+               "flat, slope:10 (degrees), slope:10+rough:0.02, stairs:0.03x0.20 (m), "
+               "stairs:0.03x0.20@30, rough:0.04, blocks:0.05, patch:0.3x0.6 (friction, m) or "
+               "soft:0.05 (s) [flat]");
   add_shortcut(command, {"--estimator", "estimation.source"}, "WHICH", "kalman or truth [kalman]");
   command.add_option("--sensors", sensors_, "noisy or ideal [noisy]")->type_name("WHICH");
+  command
+      .add_option("--aid", aid_,
+                  "Poses of the trunk from outside: rate, noise, delay, such as 10Hz:5mm:50ms "
+                  "[none]")
+      ->type_name("RATE:NOISE:DELAY");
   add_shortcut(command, {"--seed", "run.seed"}, "N", "Of noise, biases and terrain [1]");
   add_shortcut(command, {"--point", "run.point", true}, "X,Y",
                "Commanded point in the world, m [where the CoM stands when the gait starts]");
@@ -151,6 +192,16 @@ std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
   } else if (sensors_) {
     out.push_back(std::string("plant.sensors.ideal=") + (*sensors_ == "ideal" ? "true" : "false"));
   }
+  if (aid_) {
+    if (const auto aid = aid_overrides(*aid_)) {
+      out.insert(out.end(), aid->begin(), aid->end());
+    } else {
+      errors.push_back({"--aid", 0, "",
+                        "given " + quoted(*aid_) +
+                            "; allowed: rate in Hz, noise in mm and delay in ms, such as "
+                            "10Hz:5mm:50ms"});
+    }
+  }
   out.insert(out.end(), sets_.begin(), sets_.end());
   return out;
 }
@@ -170,6 +221,12 @@ Errors ConfigOptions::in_typed_words(Errors errors) const {
     if (!error.file.empty() && error.file != "--set") continue;
     for (const Shortcut& s : shortcuts_) {
       if (s.text && s.key == error.key) error = {s.option, 0, "", error.message};
+    }
+    const bool is_aid =
+        aid_ && std::any_of(std::begin(kAidParts), std::end(kAidParts),
+                            [&](const AidPart& part) { return error.key == part.key; });
+    if (is_aid) {
+      error = {"--aid", 0, "", "given " + quoted(*aid_) + "; " + error.key + ": " + error.message};
     }
     if ((radius_ || speed_) && error.key == "run.velocity") {
       error = {radius_ ? "--radius" : "--speed", 0, "",

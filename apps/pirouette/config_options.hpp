@@ -45,7 +45,7 @@ class ConfigOptions {
   std::vector<std::string> turn_overrides(const Config& config) const;
   Result<Config> load_with(const std::vector<std::string>& overrides) const;
 
-  std::optional<std::string> robot_, controller_, profile_, file_, sensors_;
+  std::optional<std::string> robot_, controller_, profile_, file_, sensors_, aid_;
   bool is_turn_ = false;
   std::optional<double> radius_, speed_, heading_offset_deg_;
   std::vector<std::string> sets_;

@@ -36,6 +36,7 @@ std::optional<Error> save(RunFolder& folder, TraceFile& trace, const Config& con
     return error;
   }
   if (auto error = folder.write(kMetricsFile, to_json(metrics))) return error;
+  if (auto error = write_terrain(folder, config)) return error;
   return folder.commit();
 }
 

@@ -87,6 +87,9 @@ wrong '--point: given "1"' spin --point 1
 wrong '--start-offset: given "a,b"' spin --start-offset a,b
 wrong '--start-yaw-deg: given 720' spin --start-yaw-deg 720
 wrong '--sensors: given "perfect"' spin --sensors perfect
+wrong '--aid: given "10Hz"; allowed: rate in Hz, noise in mm and delay in ms' spin --aid 10Hz
+wrong '--aid: given "10Hz:5cm:50ms"' spin --aid 10Hz:5cm:50ms
+wrong '--aid: given "9999Hz:5mm:50ms"; plant.sensors.aid_rate' spin --aid 9999Hz:5mm:50ms
 wrong '--estimator: given "oracle"' spin --estimator oracle
 wrong '--controller: given "mti"' spin --controller mti
 wrong '--radius' turn
@@ -112,6 +115,7 @@ wrong 'FILE' config check
 wrong '--terrain: "moon"' spin --terrain moon
 wrong '--terrain: "slope:95"' spin --terrain slope:95
 wrong '--terrain: "stairs:0.03"' spin --terrain stairs:0.03
+wrong '--terrain: "slope:10+stairs:0.03x0.2"' spin --terrain slope:10+stairs:0.03x0.2
 wrong '--robot: given "centipede"' spin --robot centipede
 wrong '--robot: given "nowhere.xml"' spin --robot nowhere.xml
 wrong 'broken.xml' spin --robot broken.xml
@@ -182,7 +186,7 @@ code=$?
 # A run, and the same again from what it left.
 short='--turns 0.05 --set run.settle_time=0.2'
 "$program" spin $short --json > stdout 2> stderr || fail 'a short spin'
-[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'metrics.json run.toml trace.npy' ] || fail 'run folder'
+[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'metrics.json run.toml terrain.npy trace.npy' ] || fail 'run folder'
 cmp -s stdout runs/spin-flat-0.7-seed1/metrics.json || fail '--json prints something else'
 grep -q '^100 %' stderr || fail 'no progress on stderr'
 "$program" spin --config runs/spin-flat-0.7-seed1/run.toml --out again --quiet > stdout 2> stderr ||

@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "support/temp_folder.hpp"
+
 namespace pirouette {
 namespace {
 
@@ -50,17 +52,13 @@ metric = "com.radius_mean_mm"
 max = 5.0
 )";
 
-class ExperimentFiles : public ::testing::Test {
+class ExperimentFiles : public test::TempFolderTest {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    file_ = fs::path(::testing::TempDir()) / ("pirouette_" + std::string(info->name()) + ".toml");
-  }
-  void TearDown() override { fs::remove(file_); }
+  fs::path file() const { return folder_ / "experiment.toml"; }
 
   Result<Experiment> load(const std::string& text, const ExperimentChanges& changes = {}) {
-    std::ofstream(file_) << text;
-    return load_experiment(file_, changes);
+    std::ofstream(file()) << text;
+    return load_experiment(file(), changes);
   }
 
   /// The good experiment with `from` replaced by `to`.
@@ -78,13 +76,11 @@ class ExperimentFiles : public ::testing::Test {
     std::string text;
     for (const Error& error : experiment.errors()) {
       std::string line = error.to_string();
-      if (line.starts_with(file_.string() + ":")) line.erase(0, file_.string().size() + 1);
+      if (line.starts_with(file().string() + ":")) line.erase(0, file().string().size() + 1);
       text += (text.empty() ? "" : "\n") + line;
     }
     return text;
   }
-
-  fs::path file_;
 };
 
 TEST_F(ExperimentFiles, ExpandRowsThenAxesThenSeeds) {

@@ -99,6 +99,25 @@ TEST(Metrics, DriftIsTheSameWhateverTheNumberOfTurns) {
   }
 }
 
+TEST(Metrics, DistanceToTheAverageIsTheRadiusWhereverTheCircleDrifts) {
+  const Vec2 bias(0.012, -0.005);
+  for (const double yaw_rate : {kYawRate, -kYawRate}) {
+    const Metrics m = evaluate(synthetic_spin(5.0, Vec2(0.3, 0.1), bias, 0.02, yaw_rate),
+                               {Vec2::Zero(), Vec2::Zero(), yaw_rate}, kRate);
+    EXPECT_NEAR(*m.com.distance_to_average_mean_mm, bias.norm() / kYawRate * 1e3, kSampling);
+    EXPECT_GT(*m.com.radius_mean_mm, 1.5 * *m.com.distance_to_average_mean_mm);
+  }
+}
+
+TEST(Metrics, DistanceToTheAverageIsTakenWhereATurnAboutIsInTheRecord) {
+  const MotionRecord record = synthetic_spin(3.0, Vec2::Zero(), Vec2(0.01, 0.0), 0.0);
+  const std::size_t count = distances_to_turn_average(record.yaw, record.p_WG).size();
+  EXPECT_NEAR(static_cast<double>(count) / static_cast<double>(record.yaw.size()), 2.0 / 3.0, 1e-3);
+  const MotionRecord less = synthetic_spin(0.9, Vec2::Zero(), Vec2(0.01, 0.0), 0.0);
+  EXPECT_TRUE(distances_to_turn_average(less.yaw, less.p_WG).empty());
+  EXPECT_TRUE(distances_to_turn_average({}, {}).empty());
+}
+
 TEST(Metrics, DriftNeedsTwoTurns) {
   const MotionRecord record = synthetic_spin(1.9, Vec2::Zero(), Vec2::Zero(), 0.005);
   EXPECT_FALSE(drift_per_turn(record.yaw, record.p_WG));
@@ -137,6 +156,56 @@ TEST(Metrics, EstimatorErrorIsHorizontalAndIgnoresTheYawsBranch) {
   EXPECT_NEAR(*m.estimator.yaw_error_rad, 0.02, 1e-9);
 }
 
+TEST(Metrics, EstimatorDriftIsThatOfItsErrorWhateverTheRobotDoes) {
+  MotionRecord record = synthetic_spin(5.0, Vec2::Zero(), Vec2(0.01, 0.0), 0.02);
+  for (std::size_t i = 0; i < record.yaw.size(); ++i) {
+    const double turns = (record.yaw[i] - record.yaw.front()) / (2.0 * kPi);
+    record.position_error[i] = turns * Vec2(0.003, -0.004) + rot2(record.yaw[i]) * Vec2(0.001, 0.0);
+  }
+  const Metrics m = evaluate(record, {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+  EXPECT_NEAR(*m.estimator.position_drift_per_turn_mm, 5.0, kSampling);
+}
+
+TEST(Metrics, RelativeAttitudeIsConstantForATrunkThatKeepsItsLeanFromASlope) {
+  const Vec3 normal(-std::sin(radians(10.0)), 0.0, std::cos(radians(10.0)));
+  const Mat3 R_WT = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
+  const RollPitchYaw lean{0.02, -0.03, 0.0};
+  MotionRecord record;
+  for (int i = 0; i < 1000; ++i) {
+    PlantTruth truth;
+    truth.ground_normal_W = normal;
+    truth.base.R_WB = R_WT * rot_z(0.02 * i) * rotation_from_rpy(lean);
+    record.add(truth, 0.02 * i, RobotState{}, 0.0);
+  }
+  const AttitudeMetrics attitude = evaluate(record, {}, kRate).attitude;
+  EXPECT_NEAR(*attitude.relative_roll_mean, lean.roll, 1e-12);
+  EXPECT_NEAR(*attitude.relative_pitch_mean, lean.pitch, 1e-12);
+  EXPECT_NEAR(*attitude.relative_roll_variance, 0.0, 1e-20);
+  EXPECT_NEAR(*attitude.relative_pitch_variance, 0.0, 1e-20);
+  EXPECT_GT(*attitude.roll_variance, 0.01);  // half of the square of 10 degrees: 0.015
+}
+
+TEST(Metrics, RelativeAttitudeOnTheFlatIsTheAttitude) {
+  const AttitudeMetrics attitude =
+      evaluate(synthetic_spin(2.0, Vec2::Zero(), Vec2::Zero(), 0.0, kYawRate, 0.02), {}, kRate)
+          .attitude;
+  EXPECT_NEAR(*attitude.relative_roll_variance, *attitude.roll_variance, 1e-12);
+  EXPECT_NEAR(*attitude.relative_pitch_mean, *attitude.pitch_mean, 1e-12);
+}
+
+TEST(Metrics, SlipCountsTheFeetThatTouch) {
+  MotionRecord record;
+  PlantTruth truth;
+  truth.v_slip_W = PerLeg<Vec3>::filled(Vec3(1.0, 0.0, 0.0));  // in the air
+  record.add(truth, 0.0, RobotState{}, 0.0);
+  EXPECT_FALSE(evaluate(record, {}, kRate).contact.slip_mean_mm_s);
+  truth.contact[Leg::kFR] = truth.contact[Leg::kRL] = true;
+  truth.v_slip_W[Leg::kFR] = Vec3(0.003, 0.004, 0.0);
+  truth.v_slip_W[Leg::kRL] = Vec3(0.0, 0.001, 0.0);
+  record.add(truth, 0.0, RobotState{}, 0.0);
+  EXPECT_NEAR(*evaluate(record, {}, kRate).contact.slip_mean_mm_s, 3.0, 1e-12);
+}
+
 TEST(Metrics, ATurnHasACircleButNoDistanceToAPoint) {
   const Vec2 velocity(0.35, 0.0);
   const Metrics m = evaluate(synthetic_spin(3.0, Vec2::Zero(), velocity, 0.0),
@@ -167,17 +236,24 @@ TEST(MetricsJson, HasTheAgreedKeysInTheirPlaces) {
                                          "/com/peak_to_peak_x_mm",
                                          "/com/peak_to_peak_y_mm",
                                          "/com/drift_per_turn_mm",
+                                         "/com/distance_to_average_mean_mm",
                                          "/com/body_bias_mm_s",
                                          "/attitude/roll_mean",
                                          "/attitude/roll_variance",
                                          "/attitude/pitch_mean",
                                          "/attitude/pitch_variance",
+                                         "/attitude/relative_roll_mean",
+                                         "/attitude/relative_roll_variance",
+                                         "/attitude/relative_pitch_mean",
+                                         "/attitude/relative_pitch_variance",
                                          "/acceleration/x_variance",
                                          "/acceleration/y_variance",
                                          "/acceleration/roll_variance",
                                          "/acceleration/pitch_variance",
                                          "/estimator/position_error_mm",
+                                         "/contact/slip_mean_mm_s",
                                          "/estimator/yaw_error_rad",
+                                         "/estimator/position_drift_per_turn_mm",
                                          "/timing/tick_us_median",
                                          "/timing/tick_us_p99",
                                          "/timing/tick_us_max",
@@ -200,6 +276,8 @@ TEST(MetricsJson, HasTheAgreedKeysInTheirPlaces) {
                                          "/context/seed",
                                          "/context/duration_s",
                                          "/context/mujoco",
+                                         "/context/terrain_half_extent_m",
+                                         "/context/terrain_pitch_m",
                                          "/context/commit"};
   for (const std::string& key : keys) {
     EXPECT_TRUE(json.contains(nlohmann::json::json_pointer(key))) << key;

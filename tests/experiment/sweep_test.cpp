@@ -11,6 +11,7 @@
 
 #include "pirouette/config/toml.hpp"
 #include "pirouette/experiment/report.hpp"
+#include "support/temp_folder.hpp"
 
 namespace pirouette {
 namespace {
@@ -59,16 +60,8 @@ std::string read(const fs::path& path) {
   return text.str();
 }
 
-class Sweeps : public ::testing::Test {
+class Sweeps : public test::TempFolderTest {
  protected:
-  void SetUp() override {
-    const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = fs::path(::testing::TempDir()) / ("pirouette_sweep_" + std::string(info->name()));
-    fs::remove_all(folder_);
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
   Experiment load(const std::string& text = kTiny) {
     const fs::path file = folder_ / "tiny.toml";
     std::ofstream(file) << text;
@@ -95,8 +88,6 @@ class Sweeps : public ::testing::Test {
     const Report report(experiment, result.value());
     return report.trials_csv() + report.csv() + report.markdown() + report.json();
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Sweeps, GiveTheSameTableForAnyNumberOfJobs) {

@@ -64,9 +64,19 @@ TEST_P(RobotOnEveryTerrain, CarriesARobotWithStiffJoints) {
   EXPECT_NEAR(ground_force.head<2>().norm(), 0.0, 0.02 * kMass * kGravity);
 }
 
+// Blocks so low that none touches a shank.
 INSTANTIATE_TEST_SUITE_P(Kinds, RobotOnEveryTerrain,
                          testing::Values("flat", "slope:10", "slope:25", "stairs:0.03x0.20",
-                                         "stairs:0.1x0.3", "rough:0.04"));
+                                         "stairs:0.1x0.3", "stairs:0.03x0.20@30", "rough:0.04",
+                                         "slope:10+rough:0.02", "blocks:0.02", "patch:0.3x0.6",
+                                         "soft:0.04"));
+
+TEST(Start, SucceedsWhereverTheRobotStandsOnBlocks) {
+  Config config = ideal_config("blocks:0.05");
+  for (config.run.seed = 1; config.run.seed <= 60; ++config.run.seed) {
+    EXPECT_TRUE(Plant::create(config, kRobot).ok()) << config.run.seed;
+  }
+}
 
 TEST(Start, PutsTheComAtTheConfiguredHeight) {
   for (const double height : {0.2, 0.27, 0.33}) {
@@ -293,6 +303,36 @@ TEST(Contacts, SlideBeyondTheFrictionConeAndHoldWithinIt) {
                           std::cos(radians(20.0));
   EXPECT_NEAR(slid(0.25), expected, 0.1 * expected);
   EXPECT_LT(slid(0.5), 0.02);
+}
+
+TEST(Contacts, SlideFurtherOnThePatch) {
+  const auto slid = [](double x) {
+    Plant plant = make_plant(ideal_config("patch:0.1x2"), Vec2(x, 0.0));
+    stand(plant, 0.5);
+    const Vec3 start = plant.truth().p_WG;
+    plant.push(Vec3(0.0, 0.5, 0.0));
+    stand(plant, 1.0);
+    return (plant.truth().p_WG - start).y();
+  };
+  // Sliding stops after v^2 / (2 mu g); 15 % for how the legs give.
+  const double expected = square(0.5) / (2.0 * 0.1 * kGravity);
+  EXPECT_NEAR(slid(1.0), expected, 0.15 * expected);
+  EXPECT_LT(slid(-1.0), 0.5 * expected);
+}
+
+TEST(Contacts, SinkFurtherIntoSoftGround) {
+  const auto sunk = [](const char* terrain) {
+    Config config = ideal_config(terrain);
+    config.plant.contact_time_constant = 0.03;
+    Plant plant = make_plant(config);
+    stand(plant, 2.0);
+    double height = 0.0;
+    for (const Vec3& p_WF : plant.truth().p_WF) height += p_WF.z() / kLegCount;
+    return 0.0225 - height;
+  };
+  // The depth under a load grows with the square of the time constant.
+  EXPECT_NEAR(sunk("soft:0.06") / sunk("soft:0.03"), 4.0, 0.4);
+  EXPECT_EQ(sunk("soft:0.03"), sunk("flat"));
 }
 
 TEST(Scene, LeavesOutAFloorOfTheRobotsOwn) {

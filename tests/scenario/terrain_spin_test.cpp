@@ -16,7 +16,9 @@ TEST_P(SpinOnTerrain, ThreeTurnsWithoutAFall) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, SpinOnTerrain,
-                         testing::Values("slope:10", "slope:20", "stairs:0.03x0.20", "rough:0.04"),
+                         testing::Values("slope:10", "slope:20", "stairs:0.03x0.20",
+                                         "stairs:0.03x0.20@30", "rough:0.04", "slope:10+rough:0.02",
+                                         "blocks:0.02", "patch:0.3x0.6", "soft:0.04"),
                          [](const auto& kind) { return "Terrain" + std::to_string(kind.index); });
 
 }  // namespace

@@ -51,7 +51,7 @@ class DenseOdometryFilter {
     noise.segment<3>(0).setConstant(config_.process_position * dt);
     noise.segment<3>(3).setConstant(config_.process_velocity * dt);
     for (const Leg leg : kLegs) {
-      drift.segment<3>(foot(leg)) = dt * in.foot[leg].v_WF_rolling_W;
+      drift.segment<3>(foot(leg)) = dt * in.foot[leg].v_WF_stance_W;
       noise.segment<3>(foot(leg)).setConstant(config_.process_foot * dt *
                                               factor(in.foot[leg].trust));
     }
@@ -85,7 +85,7 @@ class DenseOdometryFilter {
       for (int axis = 0; axis < 3; ++axis) {
         out.push_back({Vector::Unit(axis) - Vector::Unit(foot(leg) + axis), -f.p_BF_W[axis],
                        config_.measurement_position});
-        out.push_back({Vector::Unit(3 + axis), f.v_WF_rolling_W[axis] - f.v_BF_W[axis],
+        out.push_back({Vector::Unit(3 + axis), f.v_WF_stance_W[axis] - f.v_BF_W[axis],
                        config_.measurement_velocity * factor(f.trust)});
       }
       if (f.use_height) {

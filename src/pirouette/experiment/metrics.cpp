@@ -56,6 +56,8 @@ ComMetrics evaluate_com(const MotionRecord& record, const CommandedMotion& comma
   com.peak_to_peak_x_mm = scaled(peak_to_peak(component(path, 0), window), kMillimetres);
   com.peak_to_peak_y_mm = scaled(peak_to_peak(component(path, 1), window), kMillimetres);
   com.drift_per_turn_mm = scaled(drift_per_turn(record.yaw, record.p_WG), kMillimetres);
+  com.distance_to_average_mean_mm =
+      scaled(mean(distances_to_turn_average(record.yaw, record.p_WG)), kMillimetres);
   const auto bias = body_bias(record.yaw, record.v_WG_W, commanded.v_H);
   if (bias && !commanded.hold_heading) {
     com.body_bias_mm_s = bias->norm() * kMillimetres;
@@ -95,6 +97,39 @@ AccelerationMetrics evaluate_acceleration(const MotionRecord& record, double rat
   return out;
 }
 
+/// Roll and pitch of the trunk as seen from a plane with unit normal `n_W`, in its own heading:
+/// those of the world's horizontal plane are the usual ones.
+RollPitchYaw attitude_from_plane(const Mat3& R_WB, const Vec3& n_W) {
+  const Vec3 n_B = R_WB.transpose() * n_W;
+  return {std::atan2(n_B.y(), n_B.z()), std::atan2(-n_B.x(), std::hypot(n_B.y(), n_B.z())), 0.0};
+}
+
+AttitudeMetrics evaluate_attitude(const MotionRecord& record, double rate) {
+  const auto window = static_cast<std::size_t>(kRecordLength * rate);
+  AttitudeMetrics out;
+  out.roll_mean = mean(record.roll);
+  out.roll_variance = variance(record.roll);
+  out.pitch_mean = mean(record.pitch);
+  out.pitch_variance = variance(record.pitch);
+  out.roll_range = peak_to_peak(record.roll, window);
+  out.pitch_range = peak_to_peak(record.pitch, window);
+  out.relative_roll_mean = mean(record.relative_roll);
+  out.relative_roll_variance = variance(record.relative_roll);
+  out.relative_pitch_mean = mean(record.relative_pitch);
+  out.relative_pitch_variance = variance(record.relative_pitch);
+  return out;
+}
+
+EstimatorMetrics evaluate_estimator(const MotionRecord& record) {
+  EstimatorMetrics out;
+  out.position_error_mm =
+      scaled(mean(distances(record.position_error, Vec2::Zero())), kMillimetres);
+  out.yaw_error_rad = mean(record.yaw_error);
+  out.position_drift_per_turn_mm =
+      scaled(drift_per_turn(record.yaw, record.position_error), kMillimetres);
+  return out;
+}
+
 }  // namespace
 
 void MotionRecord::add(const PlantTruth& truth, double true_yaw, const RobotState& estimate,
@@ -109,9 +144,15 @@ void MotionRecord::add(const PlantTruth& truth, double true_yaw, const RobotStat
   a_WB_W.emplace_back(truth.a_WB_W.head<2>());
   roll_rate.push_back(truth.base.w_WB_B.x());
   pitch_rate.push_back(truth.base.w_WB_B.y());
-  position_error.push_back((estimate.p_WB - truth.base.p_WB).head<2>().norm());
+  const RollPitchYaw relative = attitude_from_plane(truth.base.R_WB, truth.ground_normal_W);
+  relative_roll.push_back(relative.roll);
+  relative_pitch.push_back(relative.pitch);
+  position_error.emplace_back((estimate.p_WB - truth.base.p_WB).head<2>());
   yaw_error.push_back(std::abs(wrap_angle(estimate.rpy.yaw - true_yaw)));
   arc_length.push_back(reference_arc_length);
+  for (const Leg leg : kLegs) {
+    if (truth.contact[leg]) slip.push_back(truth.v_slip_W[leg].norm());
+  }
 }
 
 Number peak_to_peak(std::span<const double> x, std::size_t length) {
@@ -137,6 +178,24 @@ Number drift_per_turn(std::span<const double> yaw, std::span<const Vec2> p_WG) {
   std::size_t last = yaw.size();
   while (std::abs(yaw.back() - yaw[last - 1]) < kTurn) --last;
   return (centroid(p_WG.subspan(last)) - centroid(p_WG.first(first))).norm() / (turns - 1.0);
+}
+
+std::vector<double> distances_to_turn_average(std::span<const double> yaw,
+                                              std::span<const Vec2> p_WG) {
+  std::vector<double> out;
+  if (yaw.empty()) return out;
+  const double direction = yaw.back() < yaw.front() ? -1.0 : 1.0;
+  const auto turned = [&](std::size_t i) { return direction * (yaw[i] - yaw.front()); };
+  const double end = turned(yaw.size() - 1);
+  Vec2 sum = Vec2::Zero();  // of the points in [first, last)
+  std::size_t first = 0, last = 0;
+  for (std::size_t i = 0; i < yaw.size(); ++i) {
+    for (; last < yaw.size() && turned(last) < turned(i) + kPi; ++last) sum += p_WG[last];
+    for (; first < last && turned(first) < turned(i) - kPi; ++first) sum -= p_WG[first];
+    if (turned(i) < kPi || turned(i) > end - kPi) continue;
+    out.push_back((p_WG[i] - sum / static_cast<double>(last - first)).norm());
+  }
+  return out;
 }
 
 std::optional<Vec2> body_bias(std::span<const double> yaw, std::span<const Vec2> v_WG_W,
@@ -168,15 +227,10 @@ Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, d
   }
   m.com = evaluate_com(record, commanded);
   m.path = evaluate_path(record, commanded);
-  const auto window = static_cast<std::size_t>(kRecordLength * rate);
-  m.attitude = {mean(record.roll),
-                variance(record.roll),
-                mean(record.pitch),
-                variance(record.pitch),
-                peak_to_peak(record.roll, window),
-                peak_to_peak(record.pitch, window)};
+  m.attitude = evaluate_attitude(record, rate);
   m.acceleration = evaluate_acceleration(record, rate);
-  m.estimator = {scaled(mean(record.position_error), kMillimetres), mean(record.yaw_error)};
+  m.contact.slip_mean_mm_s = scaled(mean(record.slip), kMillimetres);
+  m.estimator = evaluate_estimator(record);
   return m;
 }
 

@@ -30,7 +30,7 @@ struct CommandedMotion {
   std::optional<Path> path = {};  ///< in the world, from where the command came; absent: a spin
 };
 
-/// The recorded part of a run: one entry per control tick in every list.
+/// The recorded part of a run: one entry per control tick in every list but `slip`.
 struct MotionRecord {
   std::vector<double> time;            ///< s
   std::vector<Vec2> p_WG;              ///< m, true CoM
@@ -41,9 +41,13 @@ struct MotionRecord {
   std::vector<Vec2> a_WB_W;            ///< m/s^2, true, trunk origin
   std::vector<double> roll_rate;       ///< rad/s, true, about the body's x axis
   std::vector<double> pitch_rate;      ///< rad/s, true, about the body's y axis
-  std::vector<double> position_error;  ///< m, horizontal, estimated to true trunk position
+  std::vector<double> relative_roll;   ///< rad, true, from the terrain's overall plane
+  std::vector<double> relative_pitch;  ///< rad, true, from the terrain's overall plane
+  std::vector<Vec2> position_error;    ///< m, estimated less true trunk position
   std::vector<double> yaw_error;       ///< rad, |estimated - true|
   std::vector<double> arc_length;      ///< m, of the time-indexed reference along its path
+  std::vector<double> slip;  ///< m/s, speed of the contact's material point; of each foot that
+                             ///< touches, tick by tick
 
   /// `yaw` is the true yaw, unwrapped.
   void add(const PlantTruth& truth, double yaw, const RobotState& estimate,
@@ -55,7 +59,7 @@ struct ComMetrics {
   Number radius_mean_mm, radius_max_mm, radius_variance_mm2;
   Number circle_radius_mm, circle_variance_mm2, circle_centre_x_mm, circle_centre_y_mm;
   Number peak_to_peak_x_mm, peak_to_peak_y_mm;
-  Number drift_per_turn_mm;
+  Number drift_per_turn_mm, distance_to_average_mean_mm;
   Number body_bias_mm_s, body_bias_x_mm_s, body_bias_y_mm_s;
   Number bias_circle_mm;
   Number velocity_range_x_mm_s, velocity_range_y_mm_s;
@@ -68,14 +72,19 @@ struct PathMetrics {
 struct AttitudeMetrics {
   Number roll_mean, roll_variance, pitch_mean, pitch_variance;
   Number roll_range, pitch_range;
+  Number relative_roll_mean, relative_roll_variance, relative_pitch_mean, relative_pitch_variance;
 };
 
 struct AccelerationMetrics {
   Number x_variance, y_variance, roll_variance, pitch_variance;
 };
 
+struct ContactMetrics {
+  Number slip_mean_mm_s;
+};
+
 struct EstimatorMetrics {
-  Number position_error_mm, yaw_error_rad;
+  Number position_error_mm, yaw_error_rad, position_drift_per_turn_mm;
 };
 
 /// Wall-clock times; they differ from run to run.
@@ -100,6 +109,8 @@ struct RunContext {
   double velocity_x = 0.0;
   double velocity_y = 0.0;
   Number point_x, point_y;
+  double terrain_half_extent_m = 0.0;
+  double terrain_pitch_m = 0.0;
 };
 
 struct Metrics {
@@ -111,6 +122,7 @@ struct Metrics {
   PathMetrics path;
   AttitudeMetrics attitude;
   AccelerationMetrics acceleration;
+  ContactMetrics contact;
   EstimatorMetrics estimator;
   TimingMetrics timing;
   RunContext context;
@@ -130,6 +142,11 @@ Number peak_to_peak(std::span<const double> x, std::size_t length);
 /// m per turn: from the mean point of the first turn to that of the last one, divided by the turns
 /// between the middles of both. `yaw` is unwrapped. Absent for less than two turns.
 Number drift_per_turn(std::span<const double> yaw, std::span<const Vec2> p_WG);
+
+/// m, from each point to the mean of the points from half a turn before it to half a turn after,
+/// where both are in the record. `yaw` is unwrapped.
+std::vector<double> distances_to_turn_average(std::span<const double> yaw,
+                                              std::span<const Vec2> p_WG);
 
 /// Mean velocity in heading axes less the commanded one: the bias that draws a circle of radius
 /// |b| / yaw rate. Inputs in world axes; m/s.
@@ -176,6 +193,8 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(com.peak_to_peak_y_mm, "com.peak_to_peak_y_mm", "mm", "the same along y");
   v(com.drift_per_turn_mm, "com.drift_per_turn_mm", "mm",
     "net move of the CoM's one-turn average, per turn");
+  v(com.distance_to_average_mean_mm, "com.distance_to_average_mean_mm", "mm",
+    "CoM to its one-turn moving average, mean where a turn about it is in the record");
   v(com.body_bias_mm_s, "com.body_bias_mm_s", "mm/s",
     "mean CoM velocity in heading axes less the command; draws a circle of radius bias / yaw rate");
   v(com.body_bias_x_mm_s, "com.body_bias_x_mm_s", "mm/s", "forwards");
@@ -200,6 +219,12 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(attitude.pitch_variance, "attitude.pitch_variance", "rad^2", "unbiased");
   v(attitude.roll_range, "attitude.roll_range", "rad", "range in 10 s, mean over the record");
   v(attitude.pitch_range, "attitude.pitch_range", "rad", "range in 10 s, mean over the record");
+  v(attitude.relative_roll_mean, "attitude.relative_roll_mean", "rad",
+    "of the trunk from the terrain's overall plane, true");
+  v(attitude.relative_roll_variance, "attitude.relative_roll_variance", "rad^2", "unbiased");
+  v(attitude.relative_pitch_mean, "attitude.relative_pitch_mean", "rad",
+    "of the trunk from the terrain's overall plane, true");
+  v(attitude.relative_pitch_variance, "attitude.relative_pitch_variance", "rad^2", "unbiased");
 
   auto& acceleration = m.acceleration;
   v(acceleration.x_variance, "acceleration.x_variance", "(m/s^2)^2",
@@ -210,9 +235,14 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(acceleration.pitch_variance, "acceleration.pitch_variance", "(rad/s^2)^2",
     "about the body's y axis");
 
+  v(m.contact.slip_mean_mm_s, "contact.slip_mean_mm_s", "mm/s",
+    "true speed of the feet's material points at the contact, mean over the feet that touch");
+
   v(m.estimator.position_error_mm, "estimator.position_error_mm", "mm",
     "estimated to true trunk position, horizontal, mean");
   v(m.estimator.yaw_error_rad, "estimator.yaw_error_rad", "rad", "mean size");
+  v(m.estimator.position_drift_per_turn_mm, "estimator.position_drift_per_turn_mm", "mm",
+    "net move of the one-turn average of estimated less true trunk position, horizontal, per turn");
 
   auto& timing = m.timing;
   v(timing.tick_us_median, "timing.tick_us_median", "us", "one controller tick, wall clock");
@@ -249,6 +279,9 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(context.velocity_y, "context.velocity_y", "m/s", "commanded, to the left");
   v(context.point_x, "context.point_x", "m", "commanded point, world");
   v(context.point_y, "context.point_y", "m", "commanded point, world");
+  v(context.terrain_half_extent_m, "context.terrain_half_extent_m", "m",
+    "terrain.npy reaches this far from the origin along x and y");
+  v(context.terrain_pitch_m, "context.terrain_pitch_m", "m", "between its points");
 }
 
 }  // namespace pirouette

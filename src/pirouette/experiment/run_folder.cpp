@@ -2,9 +2,15 @@
 
 #include <unistd.h>
 
+#include <array>
+#include <bit>
+#include <cmath>
 #include <fstream>
 #include <system_error>
 #include <utility>
+
+#include "pirouette/experiment/npy.hpp"
+#include "pirouette/plant/terrain.hpp"
 
 namespace pirouette {
 namespace {
@@ -97,6 +103,24 @@ std::optional<Error> RunFolder::commit() {
   part_.clear();
   created_parents_.clear();
   return std::nullopt;
+}
+
+std::optional<Error> write_terrain(const RunFolder& folder, const Config& config) {
+  const Result<TerrainSpec> spec = parse_terrain(config.plant.terrain);
+  if (!spec) return spec.errors().front();
+  const Terrain terrain(spec.value(), static_cast<std::uint64_t>(config.run.seed));
+
+  const int half = static_cast<int>(std::lround(kTerrainHalfExtent / kTerrainPitch));
+  const std::string side = std::to_string(2 * half + 1);
+  std::string file = npy_header("'<f4'", "(" + side + ", " + side + ")");
+  for (int row = -half; row <= half; ++row) {
+    for (int column = -half; column <= half; ++column) {
+      const auto height = static_cast<float>(terrain.height(kTerrainPitch * Vec2(column, row)));
+      const auto bytes = std::bit_cast<std::array<char, sizeof height>>(height);
+      file.append(bytes.data(), bytes.size());
+    }
+  }
+  return folder.write(kTerrainFile, file);
 }
 
 }  // namespace pirouette

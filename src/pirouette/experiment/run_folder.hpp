@@ -1,4 +1,5 @@
-// The folder that a run leaves: run.toml, metrics.json, trace.npy. All of it or nothing.
+// The folder that a run leaves: run.toml, metrics.json, trace.npy, terrain.npy. All of it or
+// nothing.
 #pragma once
 
 #include <filesystem>
@@ -7,12 +8,17 @@
 #include <vector>
 
 #include "pirouette/base/result.hpp"
+#include "pirouette/config/config.hpp"
 
 namespace pirouette {
 
 inline constexpr const char* kRunFile = "run.toml";
 inline constexpr const char* kMetricsFile = "metrics.json";
 inline constexpr const char* kTraceFile = "trace.npy";
+inline constexpr const char* kTerrainFile = "terrain.npy";
+
+inline constexpr double kTerrainHalfExtent = 1.5;  ///< m, of terrain.npy along x and y
+inline constexpr double kTerrainPitch = 0.01;      ///< m, between its points
 
 /// A folder under construction beside its final place, `<path>.part-<pid>`. commit() moves it
 /// there; without it the destructor removes it, so that a failure leaves nothing behind.
@@ -40,5 +46,9 @@ class RunFolder {
   std::filesystem::path part_;                          ///< empty: nothing to clean up
   std::vector<std::filesystem::path> created_parents_;  ///< deepest first
 };
+
+/// Writes terrain.npy: heights (m, float32) of the ground of config.plant.terrain on a square grid
+/// about the world's origin, rows along y, columns along x, from the least to the largest.
+std::optional<Error> write_terrain(const RunFolder& folder, const Config& config);
 
 }  // namespace pirouette

@@ -1,14 +1,12 @@
 #include "pirouette/experiment/trace_file.hpp"
 
-#include <bit>
 #include <cstring>
 #include <type_traits>
 
+#include "pirouette/experiment/npy.hpp"
+
 namespace pirouette {
 namespace {
-
-static_assert(std::endian::native == std::endian::little,
-              "columns are written as they lie in memory");
 
 /// NumPy type and shape of a column's value.
 struct ColumnType {
@@ -62,9 +60,8 @@ void append_value(std::vector<char>& out, const PerLeg<T>& value) {
   for (const T& leg : value) append_value(out, leg);
 }
 
-/// Magic string, version 1.0, length and the header's dictionary, padded to a multiple of 64 bytes.
 /// Its length does not depend on `rows`, so that it can be written again over itself.
-std::string npy_header(std::uint64_t rows) {
+std::string trace_header(std::uint64_t rows) {
   std::string fields;
   const TickTrace tick;
   const PlantTruth truth;
@@ -78,26 +75,14 @@ std::string npy_header(std::uint64_t rows) {
   });
   constexpr std::size_t kRowDigits = 20;  // of the largest 64-bit number
   const std::string count = std::to_string(rows);
-  std::string header = "{'descr': [" + fields + "], 'fortran_order': False, 'shape': (" + count +
-                       ",), }" + std::string(kRowDigits - count.size(), ' ');
-  constexpr std::size_t kPrefix = 10, kAlignment = 64;
-  const std::size_t unpadded = kPrefix + header.size() + 1;
-  header.append((kAlignment - unpadded % kAlignment) % kAlignment, ' ');
-  header += '\n';
-
-  std::string out = "\x93NUMPY";
-  out += '\x01';
-  out += '\x00';
-  out += static_cast<char>(header.size() & 0xff);
-  out += static_cast<char>(header.size() >> 8);
-  return out + header;
+  return npy_header("[" + fields + "]", "(" + count + ",)", kRowDigits - count.size());
 }
 
 }  // namespace
 
 TraceFile::TraceFile(std::filesystem::path path)
     : path_(std::move(path)), stream_(path_, std::ios::binary | std::ios::trunc) {
-  const std::string header = npy_header(0);
+  const std::string header = trace_header(0);
   stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
   stream_.flush();
 }
@@ -118,7 +103,7 @@ void TraceFile::append(const TraceRow& row) {
 }
 
 std::optional<Error> TraceFile::finish() {
-  const std::string header = npy_header(rows_);
+  const std::string header = trace_header(rows_);
   stream_.seekp(0);
   stream_.write(header.data(), static_cast<std::streamsize>(header.size()));
   stream_.close();

@@ -8,6 +8,7 @@
 #include "pirouette/config/path_file.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/controller/spin_controller.hpp"
+#include "pirouette/experiment/run_folder.hpp"
 #include "pirouette/plant/plant.hpp"
 
 #ifndef PIROUETTE_VERSION
@@ -140,6 +141,8 @@ RunContext describe_run(const Config& config, const CommandedMotion& commanded) 
   c.velocity_y = commanded.v_H.y();
   c.point_x = commanded.point.x();
   c.point_y = commanded.point.y();
+  c.terrain_half_extent_m = kTerrainHalfExtent;
+  c.terrain_pitch_m = kTerrainPitch;
   return c;
 }
 

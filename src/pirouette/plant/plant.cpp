@@ -132,12 +132,15 @@ struct Plant::Impl {
         sensors(config.plant.sensors, static_cast<std::uint64_t>(config.run.seed)),
         command_delay(delay),
         steps_per_tick(steps),
+        friction(config.plant.friction),
         torque_scale(draw_torque_scales(config)),
         shows_truth(config.estimation.source == EstimatorSource::kTruth) {}
 
   /// Motor torques of `command` at the present joint state, into `truth` and the simulation.
   void drive_motors(const JointCommand& command);
   void step(const JointCommand& command);
+  /// The first half of a physics step: positions, velocities and contacts of the present state.
+  void begin_step();
   /// Refreshes `truth`: forces and accelerations of this very moment, under the command in force.
   void observe();
   void observe_foot(Leg leg);
@@ -150,6 +153,7 @@ struct Plant::Impl {
   Sensors sensors;
   CommandDelay command_delay;
   std::size_t steps_per_tick;
+  double friction;            ///< sliding, where the terrain has none of its own
   PerLeg<Vec3> torque_scale;  ///< true over nominal torque constant: abad, hip, knee
   bool shows_truth;           ///< the controller was configured to use it
 
@@ -181,6 +185,11 @@ void Plant::Impl::drive_motors(const JointCommand& command) {
   }
 }
 
+void Plant::Impl::begin_step() {
+  set_foot_friction(terrain, friction, map, *data, *model);
+  mj_step1(model.get(), data.get());
+}
+
 void Plant::Impl::step(const JointCommand& command) {
   const auto start = std::chrono::steady_clock::now();
   command_in_force = command_delay.pass(command);
@@ -191,7 +200,7 @@ void Plant::Impl::step(const JointCommand& command) {
   mj_step2(model.get(), data.get());
   diverged = !is_sound(*model, *data);
   if (diverged) return;
-  mj_step1(model.get(), data.get());
+  begin_step();
   step_times.add(
       std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
 }
@@ -287,7 +296,7 @@ Result<Plant> Plant::create(const Config& config, const std::string& mjcf, const
   auto impl = std::make_unique<Impl>(config, terrain, std::move(scene).value(), *delay, *steps);
   errors = stand_robot(*impl->model, impl->map, terrain, xy, yaw, config.body.height, *impl->data);
   if (!errors.empty()) return errors;
-  mj_step1(impl->model.get(), impl->data.get());
+  impl->begin_step();
   impl->observe();
   return Plant(std::move(impl));
 }
@@ -315,7 +324,7 @@ void Plant::push(const Vec3& delta_v_W) {
   if (impl_->diverged) return;
   Eigen::Map<Vec3>(impl_->data->qvel + impl_->map.trunk_dof) += delta_v_W;
   impl_->diverged = !is_sound(*impl_->model, *impl_->data);
-  if (!impl_->diverged) mj_step1(impl_->model.get(), impl_->data.get());
+  if (!impl_->diverged) impl_->begin_step();
   impl_->observe();
 }
 

@@ -16,7 +16,9 @@ enum class RandomPurpose : std::uint32_t {
   kTerrain = 1,
   kSensorBias = 2,
   kSensorNoise = 3,
-  kTorqueConstants = 4
+  kTorqueConstants = 4,
+  kContactErrors = 5,
+  kPositionAid = 6
 };
 
 class RandomStream {

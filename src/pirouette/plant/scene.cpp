@@ -58,13 +58,21 @@ Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
     model.geom_condim[leg.foot_geom] = kFootContactDimensions;
     model.geom_priority[leg.foot_geom] = foot_priority;
     Eigen::Map<Vec2>(model.geom_solref + mjNREF * leg.foot_geom) =
-        Vec2(config.contact_time_constant, kContactDampingRatio);
+        Vec2(terrain.contact_time_constant(config.contact_time_constant), kContactDampingRatio);
     for (const int dof : leg.dof) {
       model.dof_frictionloss[dof] *= config.joint_friction_scale;
       model.dof_damping[dof] *= config.joint_damping_scale;
     }
   }
   return scene;
+}
+
+void set_foot_friction(const Terrain& terrain, double elsewhere, const RobotMap& map,
+                       const mjData& data, mjModel& model) {
+  for (const LegMap& leg : map.legs) {
+    const Eigen::Map<const Vec2> xy(data.geom_xpos + 3 * leg.foot_geom);
+    model.geom_friction[3 * leg.foot_geom] = terrain.friction(xy, elsewhere);
+  }
 }
 
 }  // namespace pirouette

@@ -35,4 +35,9 @@ struct Scene {
 Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
                           const std::string& mjcf);
 
+/// Gives each foot the sliding friction of the terrain below it, `elsewhere` where that has none of
+/// its own. The foot's priority makes it that of its contacts in the next step.
+void set_foot_friction(const Terrain& terrain, double elsewhere, const RobotMap& map,
+                       const mjData& data, mjModel& model);
+
 }  // namespace pirouette

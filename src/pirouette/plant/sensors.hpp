@@ -2,6 +2,8 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
+#include <optional>
 
 #include "pirouette/config/config.hpp"
 #include "pirouette/plant/random.hpp"
@@ -10,17 +12,63 @@
 
 namespace pirouette {
 
+/// The contact flags, late and now and then wrong.
+class ContactFlags {
+ public:
+  ContactFlags(const SensorConfig& config, std::uint64_t seed);
+
+  /// Flags at `time` (s, never falling) of feet that are pressed with `normal_force` (N).
+  PerLeg<bool> sample(double time, const PerLeg<double>& normal_force);
+
+ private:
+  struct Sample {
+    double time;  ///< s
+    PerLeg<bool> flags;
+  };
+
+  double threshold_;           ///< N
+  double delay_;               ///< s
+  double error_;               ///< probability that a flag is wrong
+  std::deque<Sample> recent_;  ///< oldest first; the first is the last one that is old enough
+  RandomStream random_;
+};
+
+/// Poses of the trunk measured from outside: at their own rate, late, with noise and gaps.
+class PositionAidSource {
+ public:
+  PositionAidSource(const SensorConfig& config, std::uint64_t seed);
+
+  /// Measures if one is due at `time` (s, never falling), and hands out the newest that arrives.
+  std::optional<PositionAid> sample(double time, const BaseTruth& truth);
+
+ private:
+  void measure(double time, const BaseTruth& truth);
+
+  double rate_;                        ///< Hz; 0: none
+  double noise_;                       ///< m
+  double yaw_noise_;                   ///< rad
+  double delay_;                       ///< s
+  double dropout_;                     ///< probability that one is lost
+  double lost_after_;                  ///< s; 0: never
+  std::int64_t next_ = 0;              ///< number of the next measurement, due at next_ / rate_
+  std::deque<PositionAid> under_way_;  ///< oldest first
+  RandomStream random_;
+};
+
 class Sensors {
  public:
   /// Draws the biases of this `seed`.
   Sensors(const SensorConfig& config, std::uint64_t seed);
 
-  /// One sample of every sensor. `normal_force` (N) is what presses on each foot.
+  /// One sample of every sensor; time never falls from call to call. `normal_force` (N) is what
+  /// presses on each foot.
   SensorReading sample(const PlantTruth& truth, const PerLeg<double>& normal_force);
 
  private:
-  SensorConfig config_;  ///< with noise and biases of zero if the sensors are ideal
+  SensorConfig config_;  ///< as it acts: without noise, biases and errors if it is ideal
   RandomStream noise_;
+  ContactFlags contact_flags_;
+  PositionAidSource aid_;
   Vec3 accelerometer_bias_B_;  ///< m/s^2
   Vec3 gyro_bias_B_;           ///< rad/s
 };

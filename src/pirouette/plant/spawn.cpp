@@ -8,7 +8,8 @@ namespace pirouette {
 namespace {
 
 constexpr int kMaxIterations = 200;
-constexpr double kTolerance = 1e-9;       ///< m
+constexpr int kFreeIterations = 100;  ///< then the footholds stay, lest they hop on and off an edge
+constexpr double kTolerance = 1e-9;   ///< m
 constexpr double kReachTolerance = 1e-4;  ///< m, beyond it the leg counts as too short
 constexpr double kDamping = 1e-8;         ///< m^2, keeps a straight leg's step finite
 constexpr double kMaxStep = 0.2;          ///< rad
@@ -75,6 +76,7 @@ Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& ter
     data.qpos[at_leg.qpos[2]] = 2.0 * at_leg.knee_sign * kFirstBend;
   }
 
+  PerLeg<Vec3> goal;
   double leg_error = 0.0;
   for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
     write_trunk(map, p_WB, R_WB, data);
@@ -82,14 +84,16 @@ Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& ter
     mj_comPos(&model, &data);
 
     const Vec3 p_WG = at(data.subtree_com, map.trunk_body);
-    PerLeg<Vec3> goal;
     Vec3 mean_ground = Vec3::Zero();
     leg_error = 0.0;
     for (const Leg leg : kLegs) {
       const int foot = map.legs[leg].foot_geom;
-      const Vec2 below_hip = (p_WB + p_BH_W[leg]).head<2>();
-      goal[leg] << below_hip, terrain.ball_height(below_hip, model.geom_size[3 * foot]);
-      mean_ground += Vec3(below_hip.x(), below_hip.y(), terrain.height(below_hip)) / kLegCount;
+      if (iteration < kFreeIterations) {
+        const Vec2 below_hip = (p_WB + p_BH_W[leg]).head<2>();
+        goal[leg] << below_hip, terrain.ball_height(below_hip, model.geom_size[3 * foot]);
+      }
+      const Vec2 foothold = goal[leg].head<2>();
+      mean_ground += Vec3(foothold.x(), foothold.y(), terrain.height(foothold)) / kLegCount;
       leg_error = std::max(leg_error, (goal[leg] - at(data.geom_xpos, foot)).norm());
     }
     const double ground_below_com = mean_ground.z() + gradient.dot(xy - mean_ground.head<2>());

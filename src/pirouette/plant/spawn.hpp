@@ -11,8 +11,8 @@ namespace pirouette {
 
 /// Writes a standing pose into data.qpos: the trunk parallel to the terrain's overall slope and
 /// heading `yaw`, the CoM over `xy` and `com_height` above the ground along gravity, each foot
-/// sphere vertically below its hip and just touching. On uneven ground the height counts from the
-/// mean of the four feet. Errors if a leg cannot reach.
+/// sphere vertically below its hip and just touching; at an edge, within a few millimetres of it.
+/// On uneven ground the height counts from the mean of the four feet. Errors if a leg cannot reach.
 Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& terrain,
                    const Vec2& xy, double yaw, double com_height, mjData& data);
 

@@ -2,21 +2,16 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <array>
-#include <charconv>
+#include <cmath>
 #include <limits>
-#include <optional>
 
-#include "pirouette/config/fields.hpp"
+#include "pirouette/base/rotation.hpp"
 #include "pirouette/plant/random.hpp"
 
 namespace pirouette {
 namespace {
-
-constexpr Range kSlopeDegrees{0.0, 40.0};
-constexpr Range kRise{0.0, 0.2};
-constexpr Range kRun{0.1, 1.0};
-constexpr Range kRoughHeight{0.0, 0.1};
 
 constexpr double kHalfExtent = 5.0;  ///< m, of stairs and rough ground
 constexpr double kBaseDepth = 0.5;   ///< m, of solid ground below the lowest point
@@ -29,35 +24,12 @@ constexpr int kLatticeCells = static_cast<int>(2.0 * kHalfExtent / kLatticePitch
 constexpr int kGridSize = kLatticeCells * kSamplesPerPitch + 1;  ///< points along one side
 constexpr double kGridPitch = kLatticePitch / kSamplesPerPitch;
 
-constexpr std::string_view kGrammar =
-    "flat, slope:DEGREES (0 to 40), stairs:RISExRUN (m; rise 0 to 0.2, run 0.1 to 1) or "
-    "rough:HEIGHT (m; 0 to 0.1)";
-
-std::optional<double> parse_number(std::string_view text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [stop, error] = std::from_chars(text.data(), end, value);
-  if (error != std::errc{} || stop != end || !std::isfinite(value)) return std::nullopt;
-  return value;
-}
-
-std::string shortest(double value) {
-  std::array<char, 32> buffer{};
-  const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return error == std::errc{} ? std::string(buffer.data(), end) : std::to_string(value);
-}
-
-Error terrain_error(std::string_view given, const std::string& reason) {
-  return {"", 0, "plant.terrain", "\"" + std::string(given) + "\": " + reason};
-}
-
-/// Error if `value` is out of `range`.
-std::optional<Error> check(std::string_view given, std::string_view what, double value,
-                           const Range& range) {
-  if (value >= range.min && value <= range.max) return std::nullopt;
-  return terrain_error(given, std::string(what) + " is " + shortest(value) + "; allowed " +
-                                  shortest(range.min) + " to " + shortest(range.max));
-}
+/// Blocks: one box somewhere in each cell of a square grid about the origin.
+constexpr double kBlockPitch = 0.2;  ///< m
+constexpr int kBlockCells = 20;      ///< along one side
+constexpr double kBlockHalfExtent = 0.5 * kBlockCells * kBlockPitch;
+constexpr double kBlockSide = 0.1, kBlockSideSpread = 0.05;  ///< m, smallest and what is added
+constexpr double kBlockShift = 0.05;  ///< m, largest from the middle of the cell along x and y
 
 /// Weights of Catmull and Rom's cubic for the four points about a cell, at share t of the cell.
 std::array<double, 4> cubic_weights(double t) {
@@ -94,9 +66,22 @@ std::vector<double> random_field(std::uint64_t seed) {
   return field;
 }
 
-double stair_index(const Stairs& stairs, double x) {
+Vec2 climb_direction(const Stairs& stairs) {
+  const double angle = radians(stairs.degrees);
+  return {std::cos(angle), std::sin(angle)};
+}
+
+/// Number of the tread at `along` (m) in the direction of climbing.
+double stair_index(const Stairs& stairs, double along) {
   const double last = std::ceil(kHalfExtent / stairs.run);
-  return std::clamp(std::round(x / stairs.run), -last, last);
+  return std::clamp(std::round(along / stairs.run), -last, last);
+}
+
+/// m, of the centre of a ball that touches the upper edge of a wall of `height` at a horizontal
+/// distance `distance` from it; 0 if it passes by.
+double height_on_edge(double height, double distance, double radius) {
+  const double above = square(radius) - square(distance);
+  return above > 0.0 ? height + std::sqrt(above) : 0.0;
 }
 
 mjsGeom* add_geom(mjSpec& spec, mjtGeom type, const std::string& name, const Vec3& friction) {
@@ -114,76 +99,88 @@ mjsGeom* add_geom(mjSpec& spec, mjtGeom type, const std::string& name, const Vec
 
 }  // namespace
 
-Result<TerrainSpec> parse_terrain(std::string_view text) {
-  const std::size_t colon = text.find(':');
-  const std::string_view kind = text.substr(0, colon);
-  const std::string_view rest = colon == std::string_view::npos ? "" : text.substr(colon + 1);
-  const Error unknown = terrain_error(text, "expected " + std::string(kGrammar));
-
-  if (kind == "flat") return text == kind ? Result<TerrainSpec>(FlatGround{}) : unknown;
-
-  if (kind == "slope" || kind == "rough") {
-    const std::optional<double> number = parse_number(rest);
-    if (!number) return unknown;
-    const bool is_slope = kind == "slope";
-    const auto error = is_slope ? check(text, "the slope in degrees", *number, kSlopeDegrees)
-                                : check(text, "the height in metres", *number, kRoughHeight);
-    if (error) return *error;
-    return is_slope ? TerrainSpec(Slope{*number}) : TerrainSpec(RoughGround{*number});
-  }
-
-  if (kind == "stairs") {
-    const std::size_t cross = rest.find('x');
-    if (cross == std::string_view::npos) return unknown;
-    const std::optional<double> rise = parse_number(rest.substr(0, cross));
-    const std::optional<double> run = parse_number(rest.substr(cross + 1));
-    if (!rise || !run) return unknown;
-    Errors errors;
-    if (const auto error = check(text, "the rise in metres", *rise, kRise))
-      errors.push_back(*error);
-    if (const auto error = check(text, "the run in metres", *run, kRun)) errors.push_back(*error);
-    if (!errors.empty()) return errors;
-    return TerrainSpec(Stairs{*rise, *run});
-  }
-  return unknown;
-}
-
-std::string to_string(const TerrainSpec& spec) {
-  if (const auto* slope = std::get_if<Slope>(&spec)) return "slope:" + shortest(slope->degrees);
-  if (const auto* stairs = std::get_if<Stairs>(&spec)) {
-    return "stairs:" + shortest(stairs->rise) + "x" + shortest(stairs->run);
-  }
-  if (const auto* rough = std::get_if<RoughGround>(&spec))
-    return "rough:" + shortest(rough->height);
-  return "flat";
-}
-
 Terrain::Terrain(const TerrainSpec& spec, std::uint64_t seed) : spec_(spec) {
-  const auto* rough = std::get_if<RoughGround>(&spec_);
-  if (!rough) return;
-  const std::vector<double> field = random_field(seed);
-  const auto [low, high] = std::minmax_element(field.begin(), field.end());
-  double sum = 0.0;
-  grid_.reserve(field.size());
-  for (const double value : field) {
-    const double share = (value - *low) / (*high - *low);
-    grid_.push_back(static_cast<float>(share));
-    sum += share;
+  if (const auto* rough = std::get_if<RoughGround>(&spec_); rough && rough->height > 0.0)
+    make_grid(*rough, seed);
+  if (const auto* blocks = std::get_if<Blocks>(&spec_); blocks && blocks->height > 0.0)
+    make_blocks(*blocks, seed);
+}
+
+void Terrain::make_grid(const RoughGround& rough, std::uint64_t seed) {
+  std::vector<double> heights = random_field(seed);
+  const auto [smallest, largest] = std::minmax_element(heights.begin(), heights.end());
+  const double offset = *smallest, spread = *largest - *smallest;
+  const double gradient = std::tan(radians(rough.slope_degrees));
+  double mean_share = 0.0;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    const double share = (heights[i] - offset) / spread;
+    mean_share += share / static_cast<double>(heights.size());
+    const double x = static_cast<double>(i % kGridSize) * kGridPitch - kHalfExtent;
+    heights[i] = rough.height * share + gradient * x;
   }
-  grid_bottom_ = -rough->height * sum / static_cast<double>(field.size());
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  grid_range_ = *high - *low;
+  grid_bottom_ = *low - rough.height * mean_share;
+  grid_.reserve(heights.size());
+  for (const double height : heights)
+    grid_.push_back(static_cast<float>((height - *low) / grid_range_));
+}
+
+void Terrain::make_blocks(const Blocks& blocks, std::uint64_t seed) {
+  RandomStream random(seed, RandomPurpose::kTerrain);
+  const auto shift = [&] { return kBlockShift * (2.0 * random.uniform() - 1.0); };
+  blocks_.reserve(kBlockCells * kBlockCells);
+  for (int row = 0; row < kBlockCells; ++row) {
+    for (int column = 0; column < kBlockCells; ++column) {
+      Block& block = blocks_.emplace_back();
+      block.centre =
+          Vec2((column + 0.5) * kBlockPitch, (row + 0.5) * kBlockPitch).array() - kBlockHalfExtent;
+      block.centre.x() += shift();
+      block.centre.y() += shift();
+      block.yaw = 0.5 * kPi * random.uniform();
+      block.half_side = 0.5 * (kBlockSide + kBlockSideSpread * random.uniform());
+      block.height = blocks.height * random.uniform();
+    }
+  }
+}
+
+double Terrain::Block::distance(const Vec2& xy) const {
+  const Vec2 beyond = (rot2(-yaw) * (xy - centre)).cwiseAbs().array() - half_side;
+  return beyond.cwiseMax(0.0).norm();
+}
+
+template <class HeightOn>
+double Terrain::highest_block(const Vec2& xy, HeightOn&& height_on) const {
+  double highest = 0.0;
+  if (blocks_.empty()) return highest;
+  // A block of another cell than the next ones is out of reach of a foot.
+  const auto cell = [](double x) {
+    return static_cast<int>(std::floor((x + kBlockHalfExtent) / kBlockPitch));
+  };
+  const auto first = [&](double x) { return std::clamp(cell(x) - 1, 0, kBlockCells); };
+  const auto end = [&](double x) { return std::clamp(cell(x) + 2, 0, kBlockCells); };
+  for (int row = first(xy.y()); row < end(xy.y()); ++row) {
+    for (int column = first(xy.x()); column < end(xy.x()); ++column) {
+      const Block& block = blocks_[static_cast<std::size_t>(row * kBlockCells + column)];
+      highest = std::max(highest, height_on(block));
+    }
+  }
+  return highest;
 }
 
 double Terrain::height(const Vec2& xy) const {
   if (const auto* slope = std::get_if<Slope>(&spec_))
     return std::tan(radians(slope->degrees)) * xy.x();
   if (const auto* stairs = std::get_if<Stairs>(&spec_))
-    return stairs->rise * stair_index(*stairs, xy.x());
-  if (std::holds_alternative<RoughGround>(spec_)) return grid_height(xy);
-  return 0.0;
+    return stairs->rise * stair_index(*stairs, climb_direction(*stairs).dot(xy));
+  if (const auto* rough = std::get_if<RoughGround>(&spec_)) {
+    return grid_.empty() ? std::tan(radians(rough->slope_degrees)) * xy.x() : grid_height(xy);
+  }
+  return highest_block(
+      xy, [&](const Block& block) { return block.distance(xy) > 0.0 ? 0.0 : block.height; });
 }
 
 double Terrain::grid_height(const Vec2& xy) const {
-  const double scale = std::get<RoughGround>(spec_).height;
   const Vec2 cells =
       ((xy.array() + kHalfExtent) / kGridPitch).cwiseMax(0.0).cwiseMin(kGridSize - 1.0);
   const int column = std::min(static_cast<int>(cells.x()), kGridSize - 2);
@@ -198,17 +195,22 @@ double Terrain::grid_height(const Vec2& xy) const {
   const double share =
       u > v ? low + u * (at(row, column + 1) - low) + v * (far - at(row, column + 1))
             : low + v * (at(row + 1, column) - low) + u * (far - at(row + 1, column));
-  return grid_bottom_ + scale * share;
+  return grid_bottom_ + grid_range_ * share;
 }
 
 double Terrain::ball_height(const Vec2& xy, double radius) const {
   if (const auto* stairs = std::get_if<Stairs>(&spec_)) {
-    const double to_next_tread = (stair_index(*stairs, xy.x()) + 0.5) * stairs->run - xy.x();
-    const double above_edge = square(radius) - square(to_next_tread);
-    const double on_edge = above_edge > 0.0 ? stairs->rise + std::sqrt(above_edge) : 0.0;
-    return height(xy) + std::max(radius, on_edge);
+    const double along = climb_direction(*stairs).dot(xy);
+    const double to_next_tread = (stair_index(*stairs, along) + 0.5) * stairs->run - along;
+    return height(xy) + std::max(radius, height_on_edge(stairs->rise, to_next_tread, radius));
   }
-  if (!std::holds_alternative<RoughGround>(spec_)) return height(xy) + radius / normal().z();
+  if (std::holds_alternative<Blocks>(spec_)) {
+    const double on_blocks = highest_block(xy, [&](const Block& block) {
+      return height_on_edge(block.height, block.distance(xy), radius);
+    });
+    return std::max(radius, on_blocks);
+  }
+  if (grid_.empty()) return height(xy) + radius / normal().z();
 
   // The upper envelope of balls about the ground points near enough to touch.
   constexpr int kSamples = 16;
@@ -224,43 +226,83 @@ double Terrain::ball_height(const Vec2& xy, double radius) const {
 }
 
 Vec3 Terrain::normal() const {
-  if (const auto* slope = std::get_if<Slope>(&spec_)) {
-    return {-std::sin(radians(slope->degrees)), 0.0, std::cos(radians(slope->degrees))};
+  const auto of_slope = [](double degrees) {
+    return Vec3(-std::sin(radians(degrees)), 0.0, std::cos(radians(degrees)));
+  };
+  if (const auto* slope = std::get_if<Slope>(&spec_)) return of_slope(slope->degrees);
+  if (const auto* rough = std::get_if<RoughGround>(&spec_)) return of_slope(rough->slope_degrees);
+  if (const auto* stairs = std::get_if<Stairs>(&spec_)) {
+    Vec3 normal;
+    normal << -stairs->rise * climb_direction(*stairs), stairs->run;
+    return normal.normalized();
   }
-  if (const auto* stairs = std::get_if<Stairs>(&spec_))
-    return Vec3(-stairs->rise, 0.0, stairs->run).normalized();
   return Vec3::UnitZ();
 }
 
+double Terrain::friction(const Vec2& xy, double elsewhere) const {
+  const auto* patch = std::get_if<Patch>(&spec_);
+  const bool on_patch =
+      patch && xy.x() >= 0.0 && xy.x() <= patch->side && std::abs(xy.y()) <= 0.5 * patch->side;
+  return on_patch ? patch->friction : elsewhere;
+}
+
+double Terrain::contact_time_constant(double otherwise) const {
+  const auto* soft = std::get_if<SoftGround>(&spec_);
+  return soft ? soft->time_constant : otherwise;
+}
+
 double Terrain::half_extent() const {
-  const bool has_edge =
-      std::holds_alternative<Stairs>(spec_) || std::holds_alternative<RoughGround>(spec_);
-  return has_edge ? kHalfExtent : std::numeric_limits<double>::infinity();
+  if (const auto* stairs = std::get_if<Stairs>(&spec_))
+    return kHalfExtent / climb_direction(*stairs).lpNorm<1>();  // of the square within a turned one
+  return grid_.empty() ? std::numeric_limits<double>::infinity() : kHalfExtent;
+}
+
+void Terrain::add_stairs(mjSpec_& spec, const Stairs& stairs, const Vec3& friction) const {
+  const Vec2 direction = climb_direction(stairs);
+  const double half_angle = 0.5 * radians(stairs.degrees);
+  const int last = static_cast<int>(stair_index(stairs, kHalfExtent));
+  const double bottom = -last * stairs.rise - kBaseDepth;
+  for (int i = -last; i <= last; ++i) {
+    const double half_height = 0.5 * (i * stairs.rise - bottom);
+    mjsGeom* geom = add_geom(spec, mjGEOM_BOX, "step_" + std::to_string(i), friction);
+    Eigen::Map<Vec3>(geom->pos) << i * stairs.run * direction, bottom + half_height;
+    Eigen::Map<Vec4>(geom->quat) << std::cos(half_angle), 0.0, 0.0, std::sin(half_angle);
+    Eigen::Map<Vec3>(geom->size) << 0.5 * stairs.run, kHalfExtent, half_height;
+  }
+}
+
+void Terrain::add_grid(mjSpec_& spec, const Vec3& friction) const {
+  mjsHField* field = mjs_addHField(&spec);
+  mjs_setName(field->element, "ground");
+  field->nrow = field->ncol = kGridSize;
+  Eigen::Map<Vec4>(field->size) << kHalfExtent, kHalfExtent, grid_range_, kBaseDepth;
+  mjs_setFloat(field->userdata, grid_.data(), static_cast<int>(grid_.size()));
+  mjsGeom* geom = add_geom(spec, mjGEOM_HFIELD, "ground", friction);
+  mjs_setString(geom->hfieldname, "ground");
+  geom->pos[2] = grid_bottom_;
+}
+
+void Terrain::add_blocks(mjSpec_& spec, const Vec3& friction) const {
+  for (std::size_t i = 0; i < blocks_.size(); ++i) {
+    const Block& block = blocks_[i];
+    const double half_height = 0.5 * (block.height + kBaseDepth);
+    mjsGeom* geom = add_geom(spec, mjGEOM_BOX, "block_" + std::to_string(i), friction);
+    Eigen::Map<Vec3>(geom->pos) << block.centre, block.height - half_height;
+    Eigen::Map<Vec4>(geom->quat) << std::cos(0.5 * block.yaw), 0.0, 0.0, std::sin(0.5 * block.yaw);
+    Eigen::Map<Vec3>(geom->size) << block.half_side, block.half_side, half_height;
+  }
 }
 
 void Terrain::add_to(mjSpec_& spec, const Vec3& friction) const {
   if (const auto* stairs = std::get_if<Stairs>(&spec_); stairs && stairs->rise > 0.0) {
-    const int last = static_cast<int>(stair_index(*stairs, kHalfExtent));
-    const double bottom = -last * stairs->rise - kBaseDepth;
-    for (int i = -last; i <= last; ++i) {
-      const double half_height = 0.5 * (i * stairs->rise - bottom);
-      mjsGeom* geom = add_geom(spec, mjGEOM_BOX, "step_" + std::to_string(i), friction);
-      Eigen::Map<Vec3>(geom->pos) << i * stairs->run, 0.0, bottom + half_height;
-      Eigen::Map<Vec3>(geom->size) << 0.5 * stairs->run, kHalfExtent, half_height;
-    }
+    add_stairs(spec, *stairs, friction);
     return;
   }
-  if (const auto* rough = std::get_if<RoughGround>(&spec_); rough && rough->height > 0.0) {
-    mjsHField* field = mjs_addHField(&spec);
-    mjs_setName(field->element, "ground");
-    field->nrow = field->ncol = kGridSize;
-    Eigen::Map<Vec4>(field->size) << kHalfExtent, kHalfExtent, rough->height, kBaseDepth;
-    mjs_setFloat(field->userdata, grid_.data(), static_cast<int>(grid_.size()));
-    mjsGeom* geom = add_geom(spec, mjGEOM_HFIELD, "ground", friction);
-    mjs_setString(geom->hfieldname, "ground");
-    geom->pos[2] = grid_bottom_;
+  if (!grid_.empty()) {
+    add_grid(spec, friction);
     return;
   }
+  add_blocks(spec, friction);
   mjsGeom* geom = add_geom(spec, mjGEOM_PLANE, "ground", friction);
   Eigen::Map<Vec3>(geom->size) << 0.0, 0.0,
       1.0;  // endless; the last is the spacing of the picture's grid
