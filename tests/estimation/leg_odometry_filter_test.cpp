@@ -53,7 +53,7 @@ class RandomInputs {
     for (FootOdometry& foot : in.foot) {
       foot.p_BF_W = vec3(0.3);
       foot.v_BF_W = vec3(0.5);
-      foot.v_WF_rolling_W = vec3(0.02);
+      foot.v_WF_stance_W = vec3(0.02);
       foot.trust = std::clamp(uniform(1.5), 0.0, 1.0);  // a half of the feet in the air
       foot.centre_height = uniform(0.05);
       foot.use_height = uniform(1.0) > 0.0;
@@ -219,7 +219,7 @@ class IdealSpin {
       FootOdometry& out = in.foot[leg];
       out.p_BF_W = R_WB * motion.foot.p_BF;
       out.v_BF_W = R_WB * (Vec3(0.0, 0.0, kRate).cross(motion.foot.p_BF) + motion.foot.v_BF_B);
-      if (filter_rolls_) out.v_WF_rolling_W = motion.v_WF_W;
+      if (filter_rolls_) out.v_WF_stance_W = motion.v_WF_W;
       out.trust = phase.trust(config_.trust_window);
       out.centre_height = kRadius;
       out.use_height = true;

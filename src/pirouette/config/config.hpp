@@ -1,9 +1,10 @@
 // Every parameter of the library, once: name, default, unit, allowed range, meaning.
 //
 // Each struct has a static `fields(self, visit)` that calls, one line a parameter,
-//   visit(self.member, "key", "unit", Range{min, max}, "meaning")   number or fixed-size list of
-//   numbers visit(self.member, "key", "meaning")                            bool, enum, string or
-//   nested group
+//   visit(self.member, "key", "unit", Range{min, max}, "meaning")
+// for a number or a fixed-size list of numbers, and
+//   visit(self.member, "key", "meaning")
+// for a bool, an enum, a string or a nested group.
 // `self` is a const or mutable reference, so the same list serves reading and writing.
 #pragma once
 
@@ -53,6 +54,18 @@ struct EnumNames<TerrainEstimation> {
   static constexpr std::array<std::string_view, 2> kNames = {"off", "plane"};
 };
 
+enum class ContactNormal { kAuto, kPlane, kVertical };
+template <>
+struct EnumNames<ContactNormal> {
+  static constexpr std::array<std::string_view, 3> kNames = {"auto", "plane", "vertical"};
+};
+
+enum class CreepModelMode { kOff, kStored, kOnline };
+template <>
+struct EnumNames<CreepModelMode> {
+  static constexpr std::array<std::string_view, 3> kNames = {"off", "stored", "online"};
+};
+
 enum class EstimatorSource { kKalman, kTruth };
 template <>
 struct EnumNames<EstimatorSource> {
@@ -67,6 +80,10 @@ struct GaitConfig {
   double early_contact_progress = 0.6;
   double max_turn_per_stride = 1.05;
   double min_period = 0.18;
+  bool adapt = true;
+  double step_duty = 0.7;
+  double step_clearance = 0.05;
+  double max_swing_height = 0.16;
 
   /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far
   /// in one.
@@ -88,6 +105,12 @@ struct GaitConfig {
       "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk "
       "by more.");
     v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "That rule shortens no further.");
+    v(s.adapt, "adapt", "Duty and swing height follow the ground that the feet have met.");
+    v(s.step_duty, "step_duty", "1", Range{0.4, 0.9}, "Duty on stepped ground, if more than duty.");
+    v(s.step_clearance, "step_clearance", "m", Range{0.0, 0.2},
+      "On stepped ground the swing's apex is this far above the highest step met.");
+    v(s.max_swing_height, "max_swing_height", "m", Range{0.005, 0.3},
+      "The rule raises the apex no further.");
   }
 };
 
@@ -129,6 +152,12 @@ struct TerrainConfig {
   double ridge = 1e-3;
   double max_slope = 0.7;
   double filter_time = 0.3;
+  ContactNormal contact_normal = ContactNormal::kAuto;
+  double step_residual = 0.004;
+  double step_residual_release = 0.002;
+  bool memory = true;
+  double edge_margin = 0.04;
+  double min_step = 0.012;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -143,6 +172,19 @@ struct TerrainConfig {
     v(s.max_slope, "max_slope", "1", Range{0.0, 2.0}, "Limit of the estimated gradient.");
     v(s.filter_time, "filter_time", "s", Range{0.0, 10.0},
       "Time constant of the plane's low-pass filter; 0: none.");
+    v(s.contact_normal, "contact_normal",
+      "Normal on which the feet roll. plane: the estimated plane's; vertical: as on treads; "
+      "auto: vertical while the footholds do not fit a plane.");
+    v(s.step_residual, "step_residual", "m", Range{0.0, 1.0},
+      "The ground counts as stepped when the last footholds miss their plane by more, rms.");
+    v(s.step_residual_release, "step_residual_release", "m", Range{0.0, 1.0},
+      "It counts as even again when they miss it by less.");
+    v(s.memory, "memory",
+      "On stepped ground, remember footholds: keep feet off edges, expect the height met before.");
+    v(s.edge_margin, "edge_margin", "m", Range{0.0, 0.2},
+      "Least distance of a foothold from a remembered edge.");
+    v(s.min_step, "min_step", "m", Range{0.001, 0.5},
+      "Least height difference of neighbouring footholds that counts as an edge.");
   }
 };
 
@@ -252,6 +294,8 @@ struct EstimationConfig {
   double attitude_time_constant = 4.0;
   double gyro_bias_time_constant = 60.0;
   double gyro_rest_samples = 600.0;
+  double tilt_bias_time = 20.0;
+  int contact_debounce = 3;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -278,6 +322,57 @@ struct EstimationConfig {
       "Time constant of the gyro-bias estimate while walking.");
     v(s.gyro_rest_samples, "gyro_rest_samples", "samples", Range{0.0, 1e6},
       "Samples at rest that the prior of no gyro bias is worth: (noise / bias)^2.");
+    v(s.tilt_bias_time, "tilt_bias_time", "s", Range{0.0, 1000.0},
+      "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: off.");
+    v(s.contact_debounce, "contact_debounce", "ticks", Range{1, 100},
+      "A contact flag counts when it has been the same for this long.");
+  }
+};
+
+struct CreepConfig {
+  CreepModelMode mode = CreepModelMode::kOnline;
+  double calibrated_friction = 0.75;
+  double calibrated_torsion = 0.004;
+  double patch_ratio = 0.0;
+  double averaging_time = 6.0;
+  double max_torsional_friction = 0.03;
+
+  template <class Self, class Visit>
+  static void fields(Self& s, Visit&& v) {
+    v(s.mode, "mode",
+      "Slip of twisting feet down a slope. off: none; stored: creep.calibrated_friction and "
+      "creep.calibrated_torsion hold; online: torsional friction from the stance forces.");
+    v(s.calibrated_friction, "calibrated_friction", "1", Range{0.05, 2.0}, "Sliding friction of the feet, calibrated.");
+    v(s.calibrated_torsion, "calibrated_torsion", "m", Range{0.0, 0.1},
+      "Torsional friction of the feet: stored value, and prior of the online estimate.");
+    v(s.patch_ratio, "patch_ratio", "m", Range{0.0, 0.1},
+      "Torsional over sliding friction, calibrated; with the online estimate it replaces "
+      "creep.calibrated_friction. 0: not known.");
+    v(s.averaging_time, "averaging_time", "s", Range{0.1, 600.0},
+      "Time constant of the online estimate.");
+    v(s.max_torsional_friction, "max_torsional_friction", "m", Range{0.0, 0.2},
+      "Bound of the online estimate.");
+  }
+};
+
+struct AidConfig {
+  bool enabled = true;
+  double time_constant = 4.0;
+  double ramp_time = 5.0;
+  double timeout = 1.0;
+  double max_offset = 0.5;
+
+  template <class Self, class Visit>
+  static void fields(Self& s, Visit&& v) {
+    v(s.enabled, "enabled", "Use position measurements from outside where there are any.");
+    v(s.time_constant, "time_constant", "s", Range{0.1, 100.0},
+      "Low-pass filter of the odometry's offset from the aid.");
+    v(s.ramp_time, "ramp_time", "s", Range{0.0, 100.0},
+      "After its first measurement the aid gains influence over this time.");
+    v(s.timeout, "timeout", "s", Range{0.01, 100.0},
+      "Without a measurement for longer the offset is held.");
+    v(s.max_offset, "max_offset", "m", Range{0.0, 10.0},
+      "A measurement further from the odometry than this beyond the offset is an outlier.");
   }
 };
 
@@ -359,6 +454,7 @@ struct JointConfig {
   double kp_stand = 60.0;
   double kd_stand = 2.0;
   double filter_time = 0.0005;
+  double friction_compensation = 1.0;
   double max_torque_rate = 20000.0;
   double max_position_rate = 60.0;
 
@@ -373,6 +469,8 @@ struct JointConfig {
       "Joint damping while standing and standing down.");
     v(s.filter_time, "filter_time", "s", Range{0.0, 0.1},
       "Time constant of the low-pass filter of the feed-forward torque; 0: none.");
+    v(s.friction_compensation, "friction_compensation", "1", Range{0.0, 1.0},
+      "Share of the robot file's joint friction and damping that the feed-forward torque overcomes.");
     v(s.max_torque_rate, "max_torque_rate", "N m/s", Range{1.0, 1e7},
       "Rate limit of the feed-forward torque.");
     v(s.max_position_rate, "max_position_rate", "rad/s", Range{0.1, 1e4},
@@ -421,10 +519,18 @@ struct SensorConfig {
   double gyro_bias = 2e-4;
   bool contact_flags = true;
   double contact_threshold = 3.0;
+  double contact_delay = 0.0;
+  double contact_error = 0.0;
+  double aid_rate = 0.0;
+  double aid_noise = 0.005;
+  double aid_yaw_noise = 0.01;
+  double aid_delay = 0.0;
+  double aid_dropout = 0.0;
+  double aid_lost_after = 0.0;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
-    v(s.ideal, "ideal", "No noise and no bias.");
+    v(s.ideal, "ideal", "No noise, no bias and no wrong contact flag.");
     v(s.encoder_noise, "encoder_noise", "rad", Range{0.0, 1.0}, "Joint angle, white, per sample.");
     v(s.joint_velocity_noise, "joint_velocity_noise", "rad/s", Range{0.0, 10.0},
       "Joint velocity, white, per sample.");
@@ -438,6 +544,18 @@ struct SensorConfig {
     v(s.contact_flags, "contact_flags", "The feet report contact.");
     v(s.contact_threshold, "contact_threshold", "N", Range{0.0, 1e3},
       "Normal force above which a foot reports contact.");
+    v(s.contact_delay, "contact_delay", "s", Range{0.0, 0.5}, "Age of the contact flags.");
+    v(s.contact_error, "contact_error", "1", Range{0.0, 1.0},
+      "Probability that a contact flag is wrong, per sample and foot.");
+    v(s.aid_rate, "aid_rate", "Hz", Range{0.0, 2000.0},
+      "Poses of the trunk measured from outside (motion capture) or by camera; 0: none.");
+    v(s.aid_noise, "aid_noise", "m", Range{0.0, 1.0}, "Its position, white, per sample and axis.");
+    v(s.aid_yaw_noise, "aid_yaw_noise", "rad", Range{0.0, 1.0}, "Its yaw, white, per sample.");
+    v(s.aid_delay, "aid_delay", "s", Range{0.0, 5.0}, "From its measurement to its arrival.");
+    v(s.aid_dropout, "aid_dropout", "1", Range{0.0, 1.0},
+      "Probability that one of its samples does not arrive.");
+    v(s.aid_lost_after, "aid_lost_after", "s", Range{0.0, 1e6},
+      "No sample is measured after this time; 0: they go on.");
   }
 };
 
@@ -453,12 +571,14 @@ struct PlantConfig {
   double torque_scale_spread = 0.0;
   double joint_friction_scale = 1.0;
   double joint_damping_scale = 1.0;
-  double contact_time_constant = 0.02;
+  double contact_time_constant = 0.005;
   SensorConfig sensors;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
-    v(s.terrain, "terrain", "flat, slope:DEGREES, stairs:RISExRUN or rough:HEIGHT (m).");
+    v(s.terrain, "terrain",
+      "flat, slope:DEGREES, slope:DEGREES+rough:HEIGHT, stairs:RISExRUN, stairs:RISExRUN@DEGREES, "
+      "rough:HEIGHT, blocks:HEIGHT, patch:FRICTIONxSIDE or soft:TIME_CONSTANT; m and s.");
     v(s.timestep, "timestep", "s", Range{1e-4, 5e-3}, "Physics step; divides the control period.");
     v(s.friction, "friction", "1", Range{0.0, 5.0}, "Sliding friction of feet and ground.");
     v(s.torsional_friction, "torsional_friction", "m", Range{0.0, 1.0},
@@ -542,6 +662,8 @@ struct Config {
   ComConfig com;
   PathConfig path;
   EstimationConfig estimation;
+  CreepConfig creep;
+  AidConfig aid;
   MpcConfig mpc;
   WbcConfig wbc;
   JointConfig joint;
@@ -563,6 +685,8 @@ struct Config {
     v(s.com, "com", "CoM planner, E16-E20.");
     v(s.path, "path", "Reference and tracker, E19-E24.");
     v(s.estimation, "estimation", "Attitude filter and leg-odometry Kalman filter.");
+    v(s.creep, "creep", "Spin-slip creep of the feet, fed forward into the odometry.");
+    v(s.aid, "aid", "Optional position aid.");
     v(s.mpc, "mpc", "Convex model predictive control.");
     v(s.wbc, "wbc", "Whole-body control.");
     v(s.joint, "joint", "Joint-level gains and limits.");

@@ -5,10 +5,9 @@
 #include "pirouette/com/com_planner.hpp"
 #include "pirouette/controller/body_horizon.hpp"
 #include "pirouette/controller/command_guard.hpp"
-#include "pirouette/estimation/attitude_filter.hpp"
-#include "pirouette/estimation/leg_odometry_filter.hpp"
+#include "pirouette/controller/ground_sense.hpp"
+#include "pirouette/controller/localization.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
-#include "pirouette/foot/rolling_foot.hpp"
 #include "pirouette/gait/foothold_planner.hpp"
 #include "pirouette/gait/gait_clock.hpp"
 #include "pirouette/lowlevel/convex_mpc.hpp"
@@ -16,8 +15,8 @@
 #include "pirouette/lowlevel/whole_body_control.hpp"
 #include "pirouette/model/robot_model.hpp"
 #include "pirouette/path/path_reference.hpp"
+#include "pirouette/path/position_aid.hpp"
 #include "pirouette/path/tracker.hpp"
-#include "pirouette/terrain/plane_estimator.hpp"
 
 namespace pirouette {
 
@@ -33,6 +32,9 @@ bool is_finite(const SensorReading& s) {
   bool ok = std::isfinite(s.time) && s.specific_force_B.allFinite() && s.w_WB_B.allFinite();
   for (const Leg leg : kLegs)
     ok = ok && s.joint_position[leg].allFinite() && s.joint_velocity[leg].allFinite();
+  if (s.aid) {
+    ok = ok && s.aid->p_WB.allFinite() && std::isfinite(s.aid->yaw) && std::isfinite(s.aid->time);
+  }
   if (s.truth) {
     ok = ok && s.truth->p_WB.allFinite() && s.truth->R_WB.allFinite() &&
          s.truth->v_WB_W.allFinite() && s.truth->w_WB_B.allFinite();
@@ -71,11 +73,10 @@ struct SpinController::Impl {
         model(std::move(robot)),
         legs(model.legs()),
         posture(nominal_posture(legs, c.body.height)),
-        foot(c.foot.model, legs[Leg::kFR].foot_radius),
-        attitude_filter(c.estimation),
-        odometry_filter(c.estimation),
-        plane_estimator(c.terrain),
+        localization(c, legs),
+        ground(c.terrain, legs[Leg::kFR].foot_radius),
         clock(c.gait),
+        aid_offset(c.aid),
         path_reference(c.path),
         tracker(c.path, c.control.rate),
         foothold_planner(c.foothold),
@@ -100,16 +101,15 @@ struct SpinController::Impl {
   double measured_period(const SensorReading& sensors) const;
 
   // The stages of a tick, in their order.
-  void estimate(const SensorReading& sensors, double dt);
-  void find_contacts(const SensorReading& sensors);
+  void follow_contacts();
+  void set_gait(const MotionCommand& command, double dt);
   void plan_body(const MotionCommand& command, double dt);
   void plan_feet(double dt);
   void solve_mpc();
   void solve_whole_body(double dt);
 
-  double trust(Leg leg) const;
-  FootOdometry foot_odometry(Leg leg) const;
-  double contact_height_above_plane() const;
+  double swing_height() const;
+  Vec3 friction_torque(Leg leg, const Vec3& dq) const;
   double com_height_above_plane() const;
   MpcInput mpc_input() const;
   bool has_fallen() const;
@@ -122,11 +122,10 @@ struct SpinController::Impl {
   Vec3 p_BG_nominal;
   PerLeg<Vec2> nominal_H{};  ///< m, footholds from the CoM
 
-  RollingFoot foot;
-  AttitudeFilter attitude_filter;
-  LegOdometryFilter odometry_filter;
-  PlaneEstimator plane_estimator;
+  Localization localization;
+  GroundSense ground;
   GaitClock clock;
+  PositionAidOffset aid_offset;
   PathReference path_reference;
   Tracker tracker;
   FootholdPlanner foothold_planner;
@@ -137,7 +136,6 @@ struct SpinController::Impl {
 
   BasePose start;
   bool started = false;
-  YawUnwrapper yaw;
   SensorReading last_good;
   MotionCommand last_good_command;
   int bad_readings = 0;
@@ -145,7 +143,7 @@ struct SpinController::Impl {
   int wbc_failures = 0;
   int ticks_until_mpc = 0;
   PerLeg<bool> solved_contacts{};  ///< contact set of the last MPC solution
-  PerLeg<bool> landed_early{};
+  PerLeg<bool> was_in_contact{};
   PerLeg<Vec3> p_WF_liftoff{};
   ContactForces last_forces;
 
@@ -159,14 +157,14 @@ void SpinController::Impl::reset(const BasePose& pose) {
   trace = TickTrace{};
   timing = TickTiming{};
   bad_readings = mpc_failures = wbc_failures = ticks_until_mpc = 0;
-  landed_early = {};
+  was_in_contact = {};
   last_forces = ContactForces{};
-  attitude_filter.reset(pose.R_WB);
+  localization.reset(pose);
   clock.reset();
+  aid_offset.reset();
   path_reference.reset();
   tracker.reset();
   com_planner.reset();
-  yaw.reset(rpy_from_rotation(pose.R_WB).yaw);
 }
 
 /// Bridges single bad inputs by the last good ones, one nominal period on; false when there have
@@ -184,26 +182,16 @@ bool SpinController::Impl::accept(const SensorReading& sensors, const MotionComm
 }
 
 void SpinController::Impl::start_from_first_reading() {
-  PerLeg<Vec3> p_WF;
   std::array<Vec3, kLegCount> contacts;
-  const Vec3 up = Vec3::UnitZ();
   for (const Leg leg : kLegs) {
-    const FootState state =
+    trace.feet[leg] =
         foot_state(legs[leg], last_good.joint_position[leg], last_good.joint_velocity[leg]);
-    p_WF[leg] = start.p_WB + start.R_WB * state.p_BF;
-    contacts[index(leg)] = foot.contact_point(p_WF[leg], up);
+    p_WF_liftoff[leg] = start.p_WB + start.R_WB * trace.feet[leg].p_BF;
+    contacts[index(leg)] = localization.foot().contact_point(p_WF_liftoff[leg], Vec3::UnitZ());
   }
-  const std::array<double, kLegCount> weights = {1.0, 1.0, 1.0, 1.0};
-  const bool flat = config.terrain.estimation == TerrainEstimation::kOff;
-  // "Flat world": no direction scatters enough to have a slope.
-  const double min_scatter = flat ? 1e9 : config.terrain.min_scatter;
-  trace.plane = fit_plane(contacts, weights, TerrainPlane{}, min_scatter, 0.0);
-  plane_estimator.reset(trace.plane);
-  odometry_filter.reset(start.p_WB, p_WF);
+  localization.start(start, trace);
+  trace.plane = ground.start(contacts);
   guard.reset(last_good.joint_position);
-  trace.state.p_WB = start.p_WB;
-  trace.state.R_WB = start.R_WB;
-  p_WF_liftoff = p_WF;
   started = true;
 }
 
@@ -213,106 +201,47 @@ double SpinController::Impl::measured_period(const SensorReading& sensors) const
   return std::clamp(sensors.time - trace.sensors.time, 0.5 * nominal, 10.0 * nominal);
 }
 
-/// How much of a foot's word the odometry takes: ramps in after touchdown and out before lift-off.
-double SpinController::Impl::trust(Leg leg) const {
-  if (!trace.gait.walking) return 1.0;
-  const LegPhase& phase = trace.gait.leg[leg];
-  if (!phase.stance || !trace.contacts[leg].measured) return 0.0;
-  if (config.estimation.trust_window <= 0.0) return 1.0;
-  return std::clamp(std::min(phase.progress, 1.0 - phase.progress) / config.estimation.trust_window,
-                    0.0, 1.0);
-}
-
 /// With the point-foot model the terrain plane runs through the sphere centres.
-double SpinController::Impl::contact_height_above_plane() const {
-  return foot.radius() * std::sqrt(1.0 + square(trace.plane.a1) + square(trace.plane.a2));
-}
-
 double SpinController::Impl::com_height_above_plane() const {
-  const double hidden_radius = legs[Leg::kFR].foot_radius - foot.radius();
+  const double hidden_radius = legs[Leg::kFR].foot_radius - localization.foot().radius();
   return config.body.height - hidden_radius;
 }
 
-FootOdometry SpinController::Impl::foot_odometry(Leg leg) const {
-  const FootState& state = trace.feet[leg];
-  const Mat3& R_WB = trace.state.R_WB;
-  FootOdometry out;
-  out.p_BF_W = R_WB * state.p_BF;
-  out.v_BF_W = R_WB * (trace.state.w_WB_B.cross(state.p_BF) + state.v_BF_B);
-  out.v_WF_rolling_W =
-      foot.rolling_velocity(R_WB * (trace.state.w_WB_B + state.w_BS_B), trace.contacts[leg].n_W);
-  out.trust = trust(leg);
-  const Vec3 p_WF = trace.state.p_WB + out.p_BF_W;
-  out.centre_height = trace.plane.height(p_WF.x(), p_WF.y()) + contact_height_above_plane();
-  out.use_height = true;
-  return out;
+/// Duty and stride by rule: the yaw rate shortens the stride, steps lengthen the stance. Both take
+/// effect at the next touchdown.
+void SpinController::Impl::set_gait(const MotionCommand& command, double dt) {
+  const GaitConfig& gait = config.gait;
+  const bool careful = gait.adapt && trace.ground.stepped;
+  clock.set_timing(gait.period_at(command.yaw_rate),
+                   careful ? std::max(gait.duty, gait.step_duty) : gait.duty);
+  trace.gait = clock.update(command.walk, dt);
+  trace.status = trace.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
 }
 
-void SpinController::Impl::estimate(const SensorReading& sensors, double dt) {
-  RobotState& state = trace.state;
-  state.time = sensors.time;
-  state.joint_position = sensors.joint_position;
-  state.joint_velocity = sensors.joint_velocity;
-  for (const Leg leg : kLegs) {
-    trace.feet[leg] =
-        foot_state(legs[leg], sensors.joint_position[leg], sensors.joint_velocity[leg]);
-  }
-  if (config.estimation.source == EstimatorSource::kTruth && sensors.truth) {
-    state.p_WB = sensors.truth->p_WB;
-    state.R_WB = sensors.truth->R_WB;
-    state.v_WB_W = sensors.truth->v_WB_W;
-    state.w_WB_B = sensors.truth->w_WB_B;
-  } else {
-    const Attitude attitude = attitude_filter.update(
-        {sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking}, dt);
-    state.R_WB = attitude.R_WB;
-    state.w_WB_B = attitude.w_WB_B;
-    OdometryInput in;
-    in.a_WB_W = state.R_WB * sensors.specific_force_B - Vec3(0.0, 0.0, kGravity);
-    for (const Leg leg : kLegs) in.foot[leg] = foot_odometry(leg);
-    const OdometryEstimate odometry = odometry_filter.update(in, dt);
-    state.p_WB = odometry.p_WB;
-    state.v_WB_W = odometry.v_WB_W;
-  }
-  state.rpy = rpy_from_rotation(state.R_WB);
-  state.rpy.yaw = yaw.update(state.rpy.yaw);
-  for (const Leg leg : kLegs) {
-    const FootState& f = trace.feet[leg];
-    state.p_WF[leg] = state.p_WB + state.R_WB * f.p_BF;
-    state.v_WF_W[leg] = state.v_WB_W + state.R_WB * (state.w_WB_B.cross(f.p_BF) + f.v_BF_B);
-  }
-  model.update(state);
-  state.p_WG = model.p_WG();
-  state.v_WG_W = model.v_WG_W();
+double SpinController::Impl::swing_height() const {
+  const GaitConfig& gait = config.gait;
+  if (!gait.adapt || !trace.ground.stepped) return gait.swing_height;
+  const double over_steps = trace.ground.step_height + gait.step_clearance;
+  return std::clamp(over_steps, gait.swing_height,
+                    std::max(gait.swing_height, gait.max_swing_height));
 }
 
-void SpinController::Impl::find_contacts(const SensorReading& sensors) {
+void SpinController::Impl::follow_contacts() {
   for (const Leg leg : kLegs) {
-    FootContact& contact = trace.contacts[leg];
-    const LegPhase& phase = trace.gait.leg[leg];
-    const bool was_in_contact = contact.in_contact;
-    contact.measured = sensors.foot_contact ? (*sensors.foot_contact)[leg] : phase.stance;
-    const bool late_in_swing =
-        !phase.stance && phase.progress >= config.gait.early_contact_progress;
-    landed_early[leg] = late_in_swing && (landed_early[leg] ||
-                                          (sensors.foot_contact.has_value() && contact.measured));
-    contact.in_contact = phase.stance || landed_early[leg];
-    contact.n_W = trace.plane.normal();
-    contact.p_WC = foot.contact_point(trace.state.p_WF[leg], contact.n_W);
-    contact.v_WF_rolling_W = foot.rolling_velocity(
-        trace.state.R_WB * (trace.state.w_WB_B + trace.feet[leg].w_BS_B), contact.n_W);
-    if (was_in_contact && !contact.in_contact) p_WF_liftoff[leg] = trace.state.p_WF[leg];
+    const bool in_contact = trace.contacts[leg].in_contact;
+    if (was_in_contact[leg] && !in_contact) p_WF_liftoff[leg] = trace.state.p_WF[leg];
+    was_in_contact[leg] = in_contact;
   }
 }
 
 void SpinController::Impl::plan_body(const MotionCommand& command, double dt) {
-  PlaneInput plane_input;
-  for (const Leg leg : kLegs) {
-    plane_input.p_WC[leg] = trace.contacts[leg].p_WC;
-    plane_input.touching[leg] = trace.contacts[leg].in_contact && trace.contacts[leg].measured;
-  }
-  trace.plane = plane_estimator.update(plane_input, dt);
-  trace.path = path_reference.update(command, trace.state, dt);
+  trace.aid_offset = aid_offset.update(trace.sensors.aid, trace.state.p_WB.head<2>(),
+                                       trace.state.time, dt);
+  // The set-point lives in the aid's frame, everything else in the odometry's.
+  RobotState in_aid_frame = trace.state;
+  in_aid_frame.p_WG.head<2>() += trace.aid_offset;
+  trace.path = path_reference.update(command, in_aid_frame, dt);
+  trace.path.p_WG -= trace.aid_offset;
   trace.twist = tracker.update(trace.path, trace.state, dt);
   trace.integral_H = tracker.integral_H();
 }
@@ -322,6 +251,7 @@ void SpinController::Impl::plan_feet(double dt) {
   FootholdInput in;
   in.gait = trace.gait;
   in.nominal_H = nominal_H;
+  const RollingFoot& foot = localization.foot();
   in.centre_offset = foot.centre_offset();
   in.p_WG = state.p_WG.head<2>();
   in.v_WG_H = rot2(state.rpy.yaw).transpose() * state.v_WG_W.head<2>();
@@ -341,6 +271,10 @@ void SpinController::Impl::plan_feet(double dt) {
     }
   }
   trace.footholds = foothold_planner.update(in);
+  if (trace.ground.stepped) {
+    for (Foothold& foothold : trace.footholds)
+      foothold = ground.adapted(foothold, foot.centre_offset());
+  }
 
   ComPlannerInput com;
   com.gait = trace.gait;
@@ -376,7 +310,7 @@ void SpinController::Impl::plan_feet(double dt) {
       continue;
     }
     trace.swing[leg] = swing_target({p_WF_liftoff[leg], trace.footholds[leg].p_WF, phase.progress,
-                                     phase.duration, config.gait.swing_height});
+                                     phase.duration, swing_height()});
   }
 }
 
@@ -385,7 +319,7 @@ MpcInput SpinController::Impl::mpc_input() const {
   MpcInput in;
   const double stride = trace.gait.stance_duration + trace.gait.swing_duration;
   in.dt = config.mpc.step_share * (trace.gait.walking ? stride : config.gait.period);
-  in.n_W = trace.plane.normal();
+  in.n_W = trace.contacts[Leg::kFR].n_W;
   in.now.rpy = Vec3(state.rpy.roll, state.rpy.pitch, state.rpy.yaw);
   in.now.p_WG = state.p_WG;
   in.now.v_WG_W = state.v_WG_W;
@@ -444,8 +378,8 @@ void SpinController::Impl::solve_whole_body(double dt) {
   in.swing = trace.swing;
   in.contacts = trace.contacts;
   in.mpc = trace.mpc;
-  in.contact_radius = foot.radius();
-  in.n_W = trace.plane.normal();
+  in.contact_radius = localization.foot().radius();
+  in.n_W = trace.contacts[Leg::kFR].n_W;
   const WbcOutput out = wbc.update(in, model);
   timing.wbc_us = microseconds_since(begin);
 
@@ -463,11 +397,21 @@ void SpinController::Impl::solve_whole_body(double dt) {
     LegCommand& c = raw[leg];
     c.q = out.q[leg];
     c.dq = out.dq[leg];
-    c.tau = out.tau[leg];
+    c.tau = out.tau[leg] + friction_torque(leg, out.dq[leg]);
     c.kp.setConstant(stance ? config.joint.kp_stance : config.joint.kp_swing);
     c.kd.setConstant(stance ? config.joint.kd_stance : config.joint.kd_swing);
   }
   if (!guard.update(raw, dt, trace.command)) stand_down(ControllerStatus::kBadCommand);
+}
+
+/// N m, to overcome the joints' own friction at the commanded rates, whose sign noise does not
+/// flip.
+Vec3 SpinController::Impl::friction_torque(Leg leg, const Vec3& dq) const {
+  constexpr double kSmoothRate = 0.05;  // rad/s
+  const LegGeometry& g = legs[leg];
+  const Vec3 direction = (dq / kSmoothRate).array().tanh();
+  return config.joint.friction_compensation *
+         (g.dry_friction.cwiseProduct(direction) + g.damping.cwiseProduct(dq));
 }
 
 bool SpinController::Impl::has_fallen() const {
@@ -515,11 +459,11 @@ const JointCommand& SpinController::tick(const SensorReading& sensors,
   if (!s.started) s.start_from_first_reading();
   t.sensors = s.last_good;
 
-  s.estimate(t.sensors, dt);
-  s.clock.set_timing(s.config.gait.period_at(s.last_good_command.yaw_rate), s.config.gait.duty);
-  t.gait = s.clock.update(s.last_good_command.walk, dt);
-  t.status = t.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
-  s.find_contacts(t.sensors);
+  s.localization.estimate(s.model, dt, t);
+  s.set_gait(s.last_good_command, dt);
+  s.localization.find_contacts(t);
+  s.follow_contacts();
+  s.ground.update(dt, t);
   s.plan_body(s.last_good_command, dt);
   s.plan_feet(dt);
   s.solve_mpc();

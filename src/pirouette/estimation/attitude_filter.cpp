@@ -1,5 +1,7 @@
 #include "pirouette/estimation/attitude_filter.hpp"
 
+#include <Eigen/Cholesky>
+
 #include "pirouette/base/rotation.hpp"
 
 namespace pirouette {
@@ -9,12 +11,44 @@ constexpr double kMaxSpecificForce =
     3.0;  // g, above which a reading is an impact and not taken at its size
 }  // namespace
 
+Vec3 turn_over_feet(const PerLeg<Vec3>& before, const PerLeg<Vec3>& now) {
+  Vec3 centre = Vec3::Zero(), shift = Vec3::Zero();
+  for (const Leg leg : kLegs) {
+    centre += before[leg] / kLegCount;
+    shift += (now[leg] - before[leg]) / kLegCount;
+  }
+  Mat3 spread = Mat3::Zero();
+  Vec3 moment = Vec3::Zero();
+  for (const Leg leg : kLegs) {
+    const Vec3 arm = before[leg] - centre;
+    spread += arm.squaredNorm() * Mat3::Identity() - arm * arm.transpose();
+    moment += arm.cross(now[leg] - before[leg] - shift);
+  }
+  return -spread.ldlt().solve(moment);
+}
+
+void AttitudeFilter::calibrate(const AttitudeInput& in, double dt) noexcept {
+  if (rest_.samples == 0.0) rest_.p_BF = in.p_BF;
+  rest_.samples += 1.0;
+  rest_.time += dt;
+  rest_.turn_by_gyro += dt * in.w_WB_B;
+  const Vec3 added = rest_.turn_by_gyro - turn_over_feet(rest_.p_BF, in.p_BF);
+  rest_.sum_t += rest_.time;
+  rest_.sum_tt += square(rest_.time);
+  rest_.sum_x += added;
+  rest_.sum_tx += rest_.time * added;
+  const double spread = rest_.samples * rest_.sum_tt - square(rest_.sum_t);
+  if (spread <= 0.0) return;
+  const Vec3 slope = (rest_.samples * rest_.sum_tx - rest_.sum_t * rest_.sum_x) / spread;
+  // Shrunk to the prior "no bias" while there are few samples.
+  gyro_bias_ = rest_.samples / (rest_.samples + config_.gyro_rest_samples) * slope;
+}
+
 Attitude AttitudeFilter::update(const AttitudeInput& in, double dt) noexcept {
   if (in.at_rest) {
-    // Mean of the samples at rest, shrunk to the prior "no bias" while there are few of them.
-    rest_sum_ += in.w_WB_B;
-    ++rest_count_;
-    gyro_bias_ = rest_sum_ / (rest_count_ + config_.gyro_rest_samples);
+    calibrate(in, dt);
+  } else {
+    rest_ = Rest{};
   }
   const Vec3 w_WB_B = in.w_WB_B - gyro_bias_;
   const Mat3 R_WB = q_WB_.toRotationMatrix();
@@ -38,8 +72,7 @@ Attitude AttitudeFilter::update(const AttitudeInput& in, double dt) noexcept {
 void AttitudeFilter::reset(const Mat3& R_WB) {
   q_WB_ = Quat(R_WB).normalized();
   gyro_bias_.setZero();
-  rest_sum_.setZero();
-  rest_count_ = 0;
+  rest_ = Rest{};
 }
 
 }  // namespace pirouette

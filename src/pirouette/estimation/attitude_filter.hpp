@@ -1,6 +1,7 @@
 // Attitude from gyro and accelerometer.
 #pragma once
 
+#include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/config/config.hpp"
 
@@ -10,8 +11,13 @@ struct AttitudeInput {
   Vec3 w_WB_B = Vec3::Zero();            ///< rad/s, gyro
   Vec3 specific_force_B = Vec3::Zero();  ///< m/s^2, accelerometer
   Vec3 v_WB_W = Vec3::Zero();            ///< m/s, last velocity estimate of the trunk origin
-  bool at_rest = false;                  ///< the robot stands still: the gyro's mean is its bias
+  bool at_rest = false;                  ///< the robot stands on four feet
+  PerLeg<Vec3> p_BF{};                   ///< m, sphere centres in trunk axes; used at rest
 };
+
+/// rad, rotation vector of a trunk that stands on four feet and sees them move from `before` to
+/// `now` (m, trunk axes): least squares, small angles.
+Vec3 turn_over_feet(const PerLeg<Vec3>& before, const PerLeg<Vec3>& now);
 
 struct Attitude {
   Mat3 R_WB = Mat3::Identity();
@@ -25,6 +31,9 @@ struct Attitude {
 /// The accelerometer measures gravity plus the trunk's own acceleration. In a steady turn the
 /// latter is omega x v for every point of the body, which is subtracted; the gait's part averages
 /// out over the filter's time constant. An accelerometer bias becomes a tilt error of bias / g.
+///
+/// A robot at rest sags and settles by more than a gyro's bias. Its feet tell how it turned in
+/// truth: the bias is the slope, over the time at rest, of what the gyro's integral adds to that.
 class AttitudeFilter {
  public:
   explicit AttitudeFilter(const EstimationConfig& config) : config_(config) {}
@@ -37,8 +46,16 @@ class AttitudeFilter {
   EstimationConfig config_;
   Quat q_WB_ = Quat::Identity();
   Vec3 gyro_bias_ = Vec3::Zero();
-  Vec3 rest_sum_ = Vec3::Zero();
-  int rest_count_ = 0;
+  void calibrate(const AttitudeInput& in, double dt) noexcept;
+
+  struct Rest {
+    PerLeg<Vec3> p_BF{};                 ///< m, at its beginning
+    Vec3 turn_by_gyro = Vec3::Zero();    ///< rad
+    double samples = 0.0, time = 0.0;    ///< -, s
+    double sum_t = 0.0, sum_tt = 0.0;    ///< of the regression on time
+    Vec3 sum_x = Vec3::Zero(), sum_tx = Vec3::Zero();
+  };
+  Rest rest_;
 };
 
 }  // namespace pirouette

@@ -44,7 +44,7 @@ void LegOdometryFilter::predict(const OdometryInput& in, double dt) noexcept {
   Q(kVelocity, kVelocity) = config_.process_velocity * dt;
   for (const Leg leg : kLegs) {
     const FootOdometry& foot = in.foot[leg];
-    x_.row(foot_state(leg)) += dt * foot.v_WF_rolling_W.transpose();
+    x_.row(foot_state(leg)) += dt * foot.v_WF_stance_W.transpose();
     Q(foot_state(leg), foot_state(leg)) = config_.process_foot * dt * noise_factor(foot.trust);
   }
   for (Covariance* P : {&P_horizontal_, &P_vertical_}) {
@@ -79,7 +79,7 @@ OdometryEstimate LegOdometryFilter::update(const OdometryInput& in, double dt) n
     if (foot.trust <= 0.0) continue;
     const double factor = noise_factor(foot.trust);
     const Vec3 p_relative = -foot.p_BF_W;
-    const Vec3 v_measured = -foot.v_BF_W + foot.v_WF_rolling_W;
+    const Vec3 v_measured = -foot.v_BF_W + foot.v_WF_stance_W;
     const auto update_axes = [&](auto& P, auto&& x, auto axes) {
       update_scalar<kStates>(P, x, kPosition, foot_state(leg), axes(p_relative),
                              config_.measurement_position);

@@ -48,6 +48,8 @@ LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
   g.tau_max = leg.tau_max;
   for (int j = 0; j < 3; ++j) {
     const int joint = leg.joint[static_cast<size_t>(j)];
+    g.dry_friction(j) = m.dof_frictionloss[leg.dof[static_cast<size_t>(j)]];
+    g.damping(j) = m.dof_damping[leg.dof[static_cast<size_t>(j)]];
     if (!m.jnt_limited[joint]) continue;
     g.q_min(j) = m.jnt_range[2 * joint];
     g.q_max(j) = m.jnt_range[2 * joint + 1];

@@ -100,13 +100,14 @@ TerrainPlane PlaneEstimator::update(const PlaneInput& in, double dt) noexcept {
     points_W[index(leg)] = contacts_[leg].p_WC;
     weights[index(leg)] = weight(contacts_[leg]);
   }
-  const TerrainPlane fit = fit_plane(points_W, weights, plane_, config_.min_scatter, config_.ridge);
+  TerrainPlane fit = fit_plane(points_W, weights, plane_, config_.min_scatter, config_.ridge);
   if (fit.weight < kMinTotalWeight) return plane_;
+  if (in.remembered) fit = *in.remembered;
 
   // Limiting the slope turns the plane about the mean contact.
-  const Vec3 mean = weighted_mean(points_W, weights).p_W;
-  const TerrainPlane limited =
-      plane_through(mean, clamp_norm(Vec2(fit.a1, fit.a2), config_.max_slope));
+  const Vec2 mean = weighted_mean(points_W, weights).p_W.head<2>();
+  const TerrainPlane limited = plane_through({mean.x(), mean.y(), fit.height(mean)},
+                                             clamp_norm(Vec2(fit.a1, fit.a2), config_.max_slope));
   const double share = config_.filter_time > 0.0 ? 1.0 - std::exp(-dt / config_.filter_time) : 1.0;
   plane_.a0 += share * (limited.a0 - plane_.a0);
   plane_.a1 += share * (limited.a1 - plane_.a1);

@@ -1,6 +1,7 @@
 // The ground plane from the feet's last contacts, and the trunk attitude that goes with it.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "pirouette/base/legs.hpp"
@@ -28,6 +29,7 @@ Vec3 terrain_aligned_rate(const TerrainPlane& plane, double yaw, double yaw_rate
 struct PlaneInput {
   PerLeg<Vec3> p_WC = PerLeg<Vec3>::filled(Vec3::Zero());  ///< m, contact points
   PerLeg<bool> touching{};
+  std::optional<TerrainPlane> remembered;  ///< through many more contacts; used instead of the feet
 };
 
 class PlaneEstimator {

@@ -1,4 +1,4 @@
-// Lengths and limits of one leg, read from the robot's MJCF by model/.
+// Lengths, limits and joint friction of one leg, read from the robot's MJCF by model/.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -17,6 +17,8 @@ struct LegGeometry {
   Vec3 q_min = Vec3::Constant(-kPi);   ///< rad
   Vec3 q_max = Vec3::Constant(kPi);    ///< rad
   Vec3 tau_max = Vec3::Constant(1e3);  ///< N m
+  Vec3 dry_friction = Vec3::Zero();    ///< N m, of the joints
+  Vec3 damping = Vec3::Zero();         ///< N m s/rad
 };
 
 }  // namespace pirouette

@@ -22,6 +22,13 @@ struct BaseTruth {
   Vec3 w_WB_B = Vec3::Zero();  ///< rad/s, body axes
 };
 
+/// A pose of the trunk measured from outside (motion capture) or by a camera on board.
+struct PositionAid {
+  Vec3 p_WB = Vec3::Zero();  ///< m
+  double yaw = 0.0;          ///< rad, in [-pi, pi]
+  double time = 0.0;         ///< s, of the measurement, by the clock of SensorReading::time
+};
+
 struct SensorReading {
   double time = 0.0;              ///< s since the robot was switched on
   PerLeg<Vec3> joint_position{};  ///< rad: abad, hip, knee
@@ -30,6 +37,7 @@ struct SensorReading {
       Vec3::Zero();  ///< m/s^2, accelerometer in body axes: (0, 0, +g) at rest on the flat
   Vec3 w_WB_B = Vec3::Zero();                ///< rad/s, gyro in body axes
   std::optional<PerLeg<bool>> foot_contact;  ///< absent where the robot has no contact sensing
+  std::optional<PositionAid> aid;            ///< present in the ticks in which one arrives
   std::optional<BaseTruth> truth;            ///< absent on a real robot
 };
 

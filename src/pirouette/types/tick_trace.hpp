@@ -5,10 +5,12 @@
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/com_plan.hpp"
 #include "pirouette/types/contact_forces.hpp"
+#include "pirouette/types/creep_estimate.hpp"
 #include "pirouette/types/foot_contacts.hpp"
 #include "pirouette/types/foot_state.hpp"
 #include "pirouette/types/foothold_plan.hpp"
 #include "pirouette/types/gait_phase.hpp"
+#include "pirouette/types/ground_estimate.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
 #include "pirouette/types/robot_state.hpp"
@@ -31,6 +33,11 @@ struct TickTrace {
   PerLeg<FootState> feet{};
   FootContacts contacts;
   TerrainPlane plane;
+  GroundEstimate ground;
+  int remembered_treads = 0;
+  CreepEstimate creep;
+  Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk
+  Vec2 aid_offset = Vec2::Zero();  ///< m, from the odometry's position to the aid's
   GaitPhase gait;
   PathPoint path;
   TwistCommand twist;
@@ -89,6 +96,15 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
         per_leg(t.contacts, [](auto& c) { return c.v_WF_rolling_W; }));
   visit("plane", "m, 1, 1", "terrain plane a0, a1, a2", Vec3(t.plane.a0, t.plane.a1, t.plane.a2));
   visit("plane_residual", "m", "rms of the contacts about the plane", t.plane.residual_rms);
+  visit("ground_stepped", "1", "the last footholds do not fit a plane", t.ground.stepped);
+  visit("ground_residual", "m", "rms of the last footholds about their plane", t.ground.residual);
+  visit("remembered_treads", "1", "of the stairs in the foothold memory", t.remembered_treads);
+  visit("torsional_friction", "m", "yaw moment of the feet per normal force, observed",
+        t.creep.torsional_friction);
+  visit("slip_per_twist", "m/rad", "creep of the stance feet down the slope",
+        t.creep.slip_per_twist_W);
+  visit("tilt_bias_H", "1", "apparent slope that turns with the trunk", t.tilt_bias_H);
+  visit("aid_offset", "m", "from the odometry's position to the aid's", t.aid_offset);
   visit("stance", "1", "scheduled stance", per_leg(t.gait.leg, [](auto& p) { return p.stance; }));
   visit("phase_progress", "1", "share of stance or swing",
         per_leg(t.gait.leg, [](auto& p) { return p.progress; }));

@@ -1,0 +1,64 @@
+#include "pirouette/controller/ground_sense.hpp"
+
+namespace pirouette {
+
+GroundSense::GroundSense(const TerrainConfig& config, double foot_radius)
+    : config_(config),
+      foot_radius_(foot_radius),
+      plane_estimator_(config),
+      classifier_(config),
+      memory_(config) {}
+
+TerrainPlane GroundSense::start(const std::array<Vec3, kLegCount>& contacts) {
+  const std::array<double, kLegCount> weights = {1.0, 1.0, 1.0, 1.0};
+  const bool flat = config_.estimation == TerrainEstimation::kOff;
+  // "Flat world": no direction scatters enough to have a slope.
+  const double min_scatter = flat ? 1e9 : config_.min_scatter;
+  const TerrainPlane plane = fit_plane(contacts, weights, TerrainPlane{}, min_scatter, 0.0);
+  plane_estimator_.reset(plane);
+  classifier_.reset();
+  memory_.reset();
+  remembered_stride_ = PerLeg<int>::filled(-1);
+  return plane;
+}
+
+void GroundSense::update(double dt, TickTrace& trace) noexcept {
+  PlaneInput plane_input;
+  for (const Leg leg : kLegs) {
+    plane_input.p_WC[leg] = trace.contacts[leg].p_WC;
+    plane_input.touching[leg] = trace.contacts[leg].in_contact && trace.contacts[leg].measured;
+  }
+  if (trace.ground.stepped) plane_input.remembered = memory_.plane();
+  trace.plane = plane_estimator_.update(plane_input, dt);
+  remember_footholds(trace);
+  trace.ground = classifier_.estimate();
+  trace.remembered_treads = static_cast<int>(memory_.tread_count());
+}
+
+// In the middle of a stance the foot carries, and neither slides in nor lifts off.
+void GroundSense::remember_footholds(TickTrace& trace) noexcept {
+  constexpr double kMidStance = 0.5;
+  for (const Leg leg : kLegs) {
+    const LegPhase& phase = trace.gait.leg[leg];
+    const bool settled =
+        phase.stance && phase.progress >= kMidStance && trace.contacts[leg].measured;
+    if (!settled || remembered_stride_[leg] == phase.stride) continue;
+    remembered_stride_[leg] = phase.stride;
+    const Vec3& p_WF = trace.state.p_WF[leg];
+    classifier_.add(leg, p_WF);
+    memory_.add(p_WF - foot_radius_ * Vec3::UnitZ(), trace.state.p_WG.head<2>());
+  }
+}
+
+Foothold GroundSense::adapted(const Foothold& planned, double centre_offset) const noexcept {
+  Foothold out = planned;
+  out.n_W = Vec3::UnitZ();
+  if (const auto ground = memory_.at(planned.p_WC.head<2>())) {
+    const double hidden_radius = foot_radius_ - centre_offset;
+    out.p_WC << ground->p_W, ground->height + hidden_radius;
+  }
+  out.p_WF = out.p_WC + centre_offset * out.n_W;
+  return out;
+}
+
+}  // namespace pirouette

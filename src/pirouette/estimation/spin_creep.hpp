@@ -1,0 +1,42 @@
+// Creep of twisting feet down a slope: docs/terrain.md#creep.
+#pragma once
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/base/math.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/types/creep_estimate.hpp"
+
+namespace pirouette {
+
+struct CreepInput {
+  Vec3 n_W = Vec3::UnitZ();    ///< unit normal of the slope
+  double twist_rate = 0.0;     ///< rad/s, of the trunk about n_W
+  double yaw_moment = 0.0;     ///< N m, of the stance forces about the CoM, about n_W
+  double normal_force = 0.0;   ///< N, sum of the stance forces along n_W
+};
+
+/// A foot that twists under torsional friction mu_t has no static friction left along the ground:
+/// elliptic Coulomb friction shares one cone between force and moment, so that the slip is
+///   v = |w| k f_t / N,   k = mu_t^2 / (mu^2 m),   m = mu_t sqrt(1 - (f_t / (mu N))^2),
+/// with w the twist rate of the foot (the shank's, not the trunk's), f_t the force along the ground and m the moment per normal force. Leg
+/// odometry cannot see it. f_t / N of the mean stance force follows from gravity and the slope.
+///
+/// What the feet resist, the stance forces must supply: over whole strides of a steady spin their
+/// mean yaw moment per normal force is m. With the ratio mu_t / mu calibrated that alone gives k.
+class SpinCreep {
+ public:
+  explicit SpinCreep(const CreepConfig& config) : config_(config) { reset(); }
+
+  CreepEstimate update(const CreepInput& in, double dt) noexcept;
+  void reset() noexcept;
+
+ private:
+  void observe(const CreepInput& in, double dt) noexcept;
+  double coefficient(double force_share) const noexcept;
+
+  CreepConfig config_;
+  double mean_moment_ = 0.0;  ///< N m, against the twist
+  double mean_force_ = 0.0;   ///< N
+};
+
+}  // namespace pirouette

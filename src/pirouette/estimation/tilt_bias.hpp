@@ -1,0 +1,37 @@
+// The part of the attitude error that turns with the trunk: docs/terrain.md#tilt-bias.
+#pragma once
+
+#include "pirouette/base/math.hpp"
+
+namespace pirouette {
+
+/// An accelerometer's bias tilts the estimated attitude by a rotation fixed in the body. The ground
+/// under a turning robot then seems to have a slope a = a0 + R(yaw) b: a0 stays, b turns along.
+/// Least squares over the last turns tells them apart, with A = E[a], B = E[R^T a], M = E[R]:
+///   b = (B - M^T A) / (1 - |M|^2),
+/// which needs a good part of a turn, and is shrunk towards 0 before.
+class TiltBias {
+ public:
+  /// `averaging_time` (s); 0: never anything but zero.
+  explicit TiltBias(double averaging_time) : averaging_time_(averaging_time) {}
+
+  /// `slope`: gradient of the ground as the uncorrected attitude shows it, world axes.
+  void update(const Vec2& slope, double yaw, double dt) noexcept;
+
+  /// Gradient b in heading axes.
+  Vec2 slope_H() const noexcept;
+
+  /// rad, body axes, small: R_true = R_estimated * exp(-rotation_B()).
+  Vec3 rotation_B() const noexcept;
+
+  void reset() noexcept { *this = TiltBias(averaging_time_); }
+
+ private:
+  double averaging_time_;
+  Vec2 mean_slope_ = Vec2::Zero();    ///< A
+  Vec2 mean_slope_H_ = Vec2::Zero();  ///< B
+  Vec2 mean_turn_ = Vec2::Zero();     ///< cosine and sine part of M
+  double weight_ = 0.0;               ///< of the data; the rest is the prior
+};
+
+}  // namespace pirouette

@@ -1,0 +1,44 @@
+// A position from outside, used as a slow offset of the set-point.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "pirouette/base/math.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/types/sensor_reading.hpp"
+
+namespace pirouette {
+
+/// Low-pass of (aid - odometry): where the odometry's frame lies in the aid's. Fed into the filter
+/// itself, an aid would shake the velocity with its noise; as an offset of the set-point it only
+/// says, slowly, where to stand. Measurements are compared with the odometry at their own time.
+/// Drop-outs are bridged; a lost aid leaves the last offset.
+class PositionAidOffset {
+ public:
+  explicit PositionAidOffset(const AidConfig& config) : config_(config) { reset(); }
+
+  /// m, horizontal, to be added to the odometry's position.
+  Vec2 update(const std::optional<PositionAid>& aid, const Vec2& p_WB, double time,
+              double dt) noexcept;
+  void reset() noexcept;
+
+ private:
+  struct Past {
+    double time = 0.0;
+    Vec2 p_WB = Vec2::Zero();
+  };
+  std::optional<Vec2> odometry_at(double time) const noexcept;
+
+  static constexpr std::size_t kHistory = 512;
+  AidConfig config_;
+  std::array<Past, kHistory> history_;
+  std::size_t recorded_ = 0;
+  Vec2 target_ = Vec2::Zero();  ///< m, last aid - odometry
+  Vec2 offset_ = Vec2::Zero();  ///< m
+  double heard_for_ = 0.0;      ///< s, with the aid alive
+  double silent_for_ = 0.0;     ///< s since its last measurement
+  bool known_ = false;
+};
+
+}  // namespace pirouette

@@ -1,0 +1,81 @@
+// Stairs as the feet have met them: treads along the climb, and where their edges are.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "pirouette/base/math.hpp"
+#include "pirouette/config/config.hpp"
+#include "pirouette/types/terrain_plane.hpp"
+
+namespace pirouette {
+
+/// Where to put a foot instead, and how high the ground was there.
+struct RememberedGround {
+  Vec2 p_W = Vec2::Zero();  ///< m, moved along the climb away from the nearest edge
+  double height = 0.0;      ///< m, of the tread
+};
+
+/// Footholds of the last strides in the odometry's frame, seen along the direction of the climb. The
+/// gradient of the plane through them is a first guess of it, several degrees off on steps; from
+/// there it turns, foothold by foothold, to where the heights in their order along it jump least.
+/// Sorted along it they fall into treads: neighbours that differ in height by more than min_step
+/// have an edge between them. Single odd heights (a foot on an edge) make no tread. Where the
+/// treads do not explain the heights, as on rough ground, the memory says nothing. It assumes
+/// straight stairs, and follows the odometry's drift by forgetting. docs/terrain.md#memory
+class FootholdMemory {
+ public:
+  static constexpr std::size_t kCapacity = 160;
+
+  explicit FootholdMemory(const TerrainConfig& config) : config_(config) {}
+
+  /// One foothold, once per stance: contact point (m) of a foot on level ground, and the robot's
+  /// place (m).
+  void add(const Vec3& p_WC, const Vec2& p_WG) noexcept;
+
+  /// Plane through the footholds around the robot, of any kind of ground: where single feet stand
+  /// on single steps it is much steadier than the plane through four of them. Absent while there
+  /// are few.
+  const std::optional<TerrainPlane>& plane() const { return plane_; }
+
+  /// Absent: no opinion about `p_W` (m).
+  std::optional<RememberedGround> at(const Vec2& p_W) const noexcept;
+
+  std::size_t tread_count() const { return valid_ ? tread_count_ : 0; }
+  void reset() noexcept;
+
+ private:
+  struct Sample {
+    double along;  ///< m, uphill
+    double height;
+  };
+  struct Tread {
+    double from = 0.0, to = 0.0;  ///< m, of the footholds on it, uphill
+    double height = 0.0;          ///< m, mean
+    double squares = 0.0;         ///< m^2, of the heights about it
+    int count = 0;
+  };
+
+  std::size_t count() const { return std::min(added_, kCapacity); }
+  void fit_around(const Vec2& p_WG) noexcept;
+  bool find_climb() noexcept;
+  /// m^2, sum of the squared jumps of the heights in their order along `direction` (rad), in which
+  /// it leaves sorted_.
+  double sort_along(double direction) noexcept;
+  void find_treads() noexcept;
+  double lower_edge(std::size_t tread) const noexcept;
+  double upper_edge(std::size_t tread) const noexcept;
+
+  TerrainConfig config_;
+  std::array<Vec3, kCapacity> footholds_;
+  std::size_t added_ = 0;
+  std::optional<TerrainPlane> plane_;
+  std::optional<double> climb_;  ///< rad, direction uphill in the world; absent: none known
+  Vec2 uphill_ = Vec2::UnitX();
+  std::array<Sample, kCapacity> sorted_;
+  std::array<Tread, kCapacity> treads_;
+  std::size_t tread_count_ = 0;
+  bool valid_ = false;
+};
+
+}  // namespace pirouette
