@@ -16,7 +16,8 @@ PIROUETTE := $(BUILD)/pirouette
 CMAKE := $(BIN)/cmake
 PYTHON := PYTHONPATH=$(CURDIR)/python $(BIN)/python
 CONFIGURE := $(CMAKE) --preset $(PRESET) --log-level=WARNING \
-    -DPIROUETTE_WERROR=$(WERROR) -DPIROUETTE_BENCH=OFF
+    -DPIROUETTE_WERROR=$(WERROR) -DPIROUETTE_BENCH=OFF \
+    -DPIROUETTE_PYTHON_MODULE=$(if $(filter release,$(PRESET)),ON,OFF)
 
 export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
@@ -44,9 +45,19 @@ configure: setup
 build: configure  ## the program, build/release/pirouette
 	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_program
 
+.PHONY: python
+python: configure  ## the compiled part of the Python package, for `import pirouette` and view
+	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_python_stub
+
 .PHONY: spin
-spin: build  ## one spin in simulation; ARGS='--rate 0.7 --terrain slope:10'
-	@$(PIROUETTE) spin $(ARGS)
+spin: build  ## one spin in simulation, with a report; ARGS='--rate 0.7 --terrain slope:10'
+	@set -o pipefail; $(PIROUETTE) spin $(ARGS) | tee $(BUILD)/spin.txt
+	@run=$$(sed -n 's/^Run folder: //p' $(BUILD)/spin.txt); test -z "$$run" || \
+	{ printf 'Report:     '; $(PYTHON) -m pirouette.report "$$run"; }
+
+.PHONY: view
+view: python  ## the running simulation in a browser; ARGS='--terrain slope:10 --port 8080'
+	@$(PYTHON) -m pirouette.view $(ARGS)
 
 .PHONY: report
 report: setup  ## HTML page about a run, with plots and a 3D replay; RUN=FOLDER [the latest of runs/]
@@ -64,14 +75,14 @@ reproduce: build  ## the paper's figures: tables and plots in reports/; what is 
 	@$(PIROUETTE) reproduce all --jobs $(JOBS) --out reports $(ARGS)
 
 .PHONY: test
-test: configure  ## every test; wrong formatting and warnings fail it with WERROR=ON only
+test: configure .venv/test.stamp  ## every test; wrong formatting and warnings fail it with WERROR=ON only
 	@echo 'check: formatting'
 	@bash scripts/check_format.sh || test $(WERROR) = OFF
 	@$(CMAKE) --build $(BUILD) --parallel $(JOBS)
 	@$(BIN)/ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --progress
 
 .PHONY: test-python
-test-python: build .venv/test.stamp  ## tests of report and export, some in a headless Chromium
+test-python: build python .venv/test.stamp  ## tests of the Python package, some in a headless Chromium
 	@bash scripts/system_packages.sh chromium chromium-driver
 	@$(PYTHON) -m pytest --quiet $(ARGS)
 

@@ -12,6 +12,9 @@ packages=(
 )
 # A Python without ensurepip cannot make an environment.
 python3 -c 'import ensurepip' 2>/dev/null || packages+=(python3-venv)
+# Its headers, for the compiled part of the Python package.
+python3 -c 'import os, sysconfig as s; os.stat(s.get_path("include") + "/Python.h")' 2>/dev/null ||
+  packages+=(python3-dev)
 [ $# = 0 ] || packages=("$@")
 
 if ! command -v dpkg-query >/dev/null; then

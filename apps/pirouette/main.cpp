@@ -85,7 +85,7 @@ void run_module(const std::string& verb, char** arguments) {
 
 /// Becomes the program `pirouette-<verb>`; returns only when there is none.
 int run_external(const CLI::App& app, char** arguments) {
-  constexpr std::array kPythonVerbs = {"report", "export"};
+  constexpr std::array kPythonVerbs = {"report", "view", "export"};
   const std::string verb = arguments[0];
   const std::string program = "pirouette-" + verb;
   if (verb.find('/') == verb.npos) {

@@ -45,7 +45,9 @@ void draw(const std::string& folder) {
 ReproduceCommand::ReproduceCommand(CLI::App& app) {
   command_ =
       app.add_subcommand("reproduce", "Repeat the paper's experiments, its numbers beside ours");
-  command_->add_option("FIGURE", figure_, "all, or one of: " + joined(known_experiments()))
+  command_
+      ->add_option("FIGURE", figure_,
+                   "all that have a source, or one of: " + joined(known_experiments()))
       ->required();
   runner_.add_options(*command_, "reports");
 }
@@ -64,7 +66,10 @@ Result<std::vector<Experiment>> ReproduceCommand::load() const {
   for (const std::string& name : names) {
     Result<Experiment> experiment = load_experiment(experiment_path(name), runner_.changes());
     if (experiment) {
-      experiments.push_back(std::move(experiment).value());
+      const bool of_the_paper = !experiment.value().source.empty();
+      if (of_the_paper || figure_ != "all") {
+        experiments.push_back(std::move(experiment).value());
+      }
       continue;
     }
     for (const Error& error : experiment.errors()) {

@@ -6,20 +6,26 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from pirouette.errors import NOT_BUILT, Error
 from pirouette.run_folder import RunError
 
 DONE, BAD_USAGE = 0, 2  # exit codes, as those of the C++ program
 
 
 def run(body: Callable[[], None]) -> int:
-    """Exit code of `body`; what it raises about its input becomes one line on stderr."""
+    """Exit code of `body`; what it raises about its input becomes a line on stderr for each
+    thing that is wrong."""
     try:
         body()
-    except RunError as error:
-        print(f"error: {' '.join(str(error).split())}", file=sys.stderr)
+    except Error as error:
+        lines = [str(error)] if isinstance(error, RunError) else str(error).splitlines()
+        for line in lines:
+            print(f"error: {' '.join(line.split())}", file=sys.stderr)
         return BAD_USAGE
     except ImportError as error:
-        print(f"error: {error}; `make setup` or `pip install .` installs it", file=sys.stderr)
+        missing = f"{error}; `make setup` or `pip install .` installs it"
+        built = error.name != "pirouette._core"
+        print(f"error: {missing if built else NOT_BUILT}", file=sys.stderr)
         return BAD_USAGE
     except OSError as error:
         print(f"error: {error.filename or 'file'}: {error.strerror}", file=sys.stderr)

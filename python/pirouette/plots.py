@@ -1,15 +1,14 @@
-"""Plots of `pirouette reproduce`: figures 6, 7 and 8 of [Zhu21] with this project's trials.
+"""Plots of `pirouette reproduce`: figures 6 to 10 of [Zhu21] with this project's trials.
 
     python -m pirouette.plots FOLDER
 
-Reads fig6.json, fig7.json, fig8.json and the traces of FOLDER, whichever are there; writes an SVG and a PNG
-beside each.
+Reads fig6.json to fig10.json and the traces of FOLDER, whichever are there; writes an SVG and a PNG beside
+each.
 """
 
 import argparse
 import json
 import sys
-from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import matplotlib
@@ -19,106 +18,22 @@ matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
 import numpy as np  # noqa: E402
 
-from pirouette.signals import CUTOFF, MM, accelerations  # noqa: E402
+from pirouette.plot_parts import (  # noqa: E402
+    SIGNALS,
+    Style,
+    add_legend,
+    draw_paths,
+    draw_signals,
+    on_terrain,
+    place,
+    relative_signals,
+    styles,
+    terrains,
+    traced,
+)
+from pirouette.signals import CUTOFF, accelerations  # noqa: E402
 
-RECORD = 10.0  # s, of figure 7
-RADII = [0.5, 1, 2, 5, 10, 20, 50, 100]  # mm, marked on the axis
-
-# Okabe and Ito: told apart with any colour vision. Line styles say the same again, for print.
-COLOURS = [
-    "#000000",
-    "#7f7f7f",
-    "#d55e00",
-    "#e69f00",
-    "#cc79a7",
-    "#0072b2",
-    "#56b4e9",
-    "#009e73",
-]
-STYLES = ["-", "--", "-", "--", "-.", "-", "--", "-"]
-MARKERS = ["o", "o", "s", "s", "v", "^", "D", "D"]
-
-Style = dict[str, dict[str, str]]
-
-
-def styles(report: dict) -> Style:
-    """Colour, line and marker of each row; the same row looks the same in every figure."""
-    order = [
-        "MIT, velocity",
-        "MIT, integrated",
-        "MIT+FKM, velocity",
-        "MIT+FKM, integrated",
-        "MIT+LQR",
-        "ASC",
-        "ours, duty 0.5",
-        "ours",
-    ]
-    labels = list(dict.fromkeys(e["label"] for e in report["entries"]))
-    order += [label for label in labels if label not in order]
-    return {
-        label: {
-            "color": COLOURS[i % len(COLOURS)],
-            "linestyle": STYLES[i % len(STYLES)],
-            "marker": MARKERS[i % len(MARKERS)],
-        }
-        for i, label in enumerate(order)
-    }
-
-
-def traced(report: dict, folder: Path) -> Iterator[tuple[dict, np.ndarray]]:
-    """The entries that kept a trace, with its recorded part."""
-    for entry in report["entries"]:
-        if entry["trace"] is None or not (folder / entry["trace"]).is_file():
-            continue
-        rows = np.load(folder / entry["trace"])
-        rows = rows[rows["time"] >= entry["record_start_s"]]
-        if len(rows) > 1:
-            yield entry, rows
-
-
-def place(entry: dict) -> str:
-    """What the traced trials have in common."""
-    return (
-        f"torsional friction {entry['torsional_friction']:g} m, {entry['profile']} plant, "
-        f"{entry['estimator']} filter, {entry['yaw_rate']:g} rad/s"
-    )
-
-
-def add_legend(figure: plt.Figure, axes: plt.Axes) -> None:
-    """One legend for all panels, below them."""
-    handles, labels = axes.get_legend_handles_labels()
-    if not handles:
-        return
-    legend = figure.legend(
-        handles,
-        labels,
-        fontsize=8,
-        loc="outside lower center",
-        ncols=len(labels),
-        frameon=False,
-    )
-    for line in legend.get_lines():
-        line.set(linewidth=1.5, alpha=1.0)
-
-
-def draw_paths(axes: plt.Axes, report: dict, folder: Path, look: Style) -> str:
-    title = "no traces kept"
-    for entry, rows in traced(report, folder):
-        com = MM * rows["true_com_position"][:, :2]
-        com = com - com.mean(axis=0)
-        style = look[entry["label"]]
-        axes.plot(
-            com[:, 0],
-            com[:, 1],
-            lw=0.7,
-            color=style["color"],
-            ls=style["linestyle"],
-            label=entry["label"],
-        )
-        title = place(entry)
-    axes.set(xlabel="x from the mean point, mm", ylabel="y from the mean point, mm")
-    axes.set_aspect("equal", adjustable="datalim")
-    return title
+TICKS = [0.5, 1, 2, 5, 10, 20, 50, 100]  # mm or mrad, marked on the axis
 
 
 def draw_radii(axes: plt.Axes, report: dict, profile: str, look: Style) -> None:
@@ -160,7 +75,7 @@ def draw_radii(axes: plt.Axes, report: dict, profile: str, look: Style) -> None:
     ticks = sorted({e["torsional_friction"] for e in entries})
     axes.set(xscale="log", yscale="log", xlabel="torsional friction, m", ylabel="radius, mm")
     axes.set_xticks(ticks, [f"{t:g}" for t in ticks])
-    axes.set_yticks(RADII, [f"{r:g}" for r in RADII])
+    axes.set_yticks(TICKS, [f"{r:g}" for r in TICKS])
     axes.minorticks_off()
     axes.set_title(f"{profile} plant", fontsize=8)
 
@@ -185,41 +100,8 @@ def draw_fig6(report: dict, folder: Path) -> plt.Figure:
 
 
 def draw_fig7(report: dict, folder: Path) -> plt.Figure:
-    look = styles(report)
-    signals: list[tuple[str, Callable[[np.ndarray], np.ndarray]]] = [
-        (
-            "x, mm",
-            lambda rows: MM
-            * (rows["true_com_position"][:, 0] - rows["true_com_position"][:, 0].mean()),
-        ),
-        (
-            "y, mm",
-            lambda rows: MM
-            * (rows["true_com_position"][:, 1] - rows["true_com_position"][:, 1].mean()),
-        ),
-        ("x velocity, mm/s", lambda rows: MM * rows["true_com_velocity"][:, 0]),
-        ("y velocity, mm/s", lambda rows: MM * rows["true_com_velocity"][:, 1]),
-        ("roll, rad", lambda rows: rows["true_rpy"][:, 0]),
-        ("pitch, rad", lambda rows: rows["true_rpy"][:, 1]),
-    ]
     figure, panels = plt.subplots(3, 2, figsize=(10.0, 7.5), sharex=True, layout="constrained")
-    title = "no traces kept"
-    for entry, rows in traced(report, folder):
-        record = rows[rows["time"] <= rows["time"][0] + RECORD]
-        style = look[entry["label"]]
-        title = place(entry)
-        for axes, (_, signal) in zip(panels.flat, signals, strict=True):
-            time = record["time"] - record["time"][0]
-            axes.plot(
-                time,
-                signal(record),
-                lw=0.8,
-                color=style["color"],
-                ls=style["linestyle"],
-                label=entry["label"],
-            )
-    for axes, (name, _) in zip(panels.flat, signals, strict=True):
-        axes.set_ylabel(name)
+    title = draw_signals(list(panels.flat), SIGNALS, report, folder, styles(report))
     for axes in panels[-1]:
         axes.set_xlabel("time, s")
     add_legend(figure, panels[0, 0])
@@ -255,7 +137,93 @@ def draw_fig8(report: dict, folder: Path) -> plt.Figure:
     return figure
 
 
-FIGURES = {"fig6": draw_fig6, "fig7": draw_fig7, "fig8": draw_fig8}
+def draw_fig9(report: dict, folder: Path) -> plt.Figure:
+    """A row of panels for each ground with traces: path, attitude, displacement, velocity."""
+    look = styles(report)
+    grounds = [t for t in terrains(report) if any(traced(on_terrain(report, t), folder))]
+    lines = max(1, len(grounds))
+    figure = plt.figure(figsize=(15.0, 6.4 * lines), layout="constrained")
+    first: plt.Axes | None = None
+    for line, ground in zip(figure.subfigures(lines, 1, squeeze=False).flat, grounds, strict=False):
+        left, right = line.subfigures(1, 2, width_ratios=[1, 2])
+        path = left.subplots()
+        panels = right.subplots(4, 2, sharex=True)
+        part = on_terrain(report, ground)
+        draw_paths(path, part, folder, look)
+        signals = SIGNALS + relative_signals(np.array(part["entries"][0]["ground_normal"]))
+        line.suptitle(draw_signals(list(panels.flat), signals, part, folder, look), fontsize=9)
+        for axes in panels.flat:
+            axes.yaxis.label.set_size(8)
+        for axes in panels[-1]:
+            axes.set_xlabel("time, s")
+        first = first or path
+    if first is not None:
+        add_legend(figure, first)
+    return figure
+
+
+def tilt_error(entry: dict) -> float:
+    """Root mean square angle (rad) of the trunk from the ground's plane, over all seeds."""
+    mean = {name: value["mean"] for name, value in entry["metrics"].items()}
+    return float(
+        np.sqrt(
+            sum(
+                mean[f"attitude.relative_{angle}_mean"] ** 2
+                + mean[f"attitude.relative_{angle}_variance"]
+                for angle in ("roll", "pitch")
+            )
+        )
+    )
+
+
+def draw_fig10(report: dict, folder: Path) -> plt.Figure:
+    """Errors over the yaw rate, a column for each ground, a line for each controller."""
+    del folder  # no traces
+    look = styles(report)
+    grounds = terrains(report)
+    figure, panels = plt.subplots(
+        2,
+        len(grounds),
+        figsize=(2.6 * len(grounds) + 0.6, 5.4),
+        sharex=True,
+        sharey="row",
+        squeeze=False,
+        layout="constrained",
+    )
+    metric = "com.distance_to_point_mean_mm"
+    for (position, attitude), ground in zip(panels.T, grounds, strict=True):
+        entries = [e for e in on_terrain(report, ground)["entries"] if metric in e["metrics"]]
+        for label in dict.fromkeys(e["label"] for e in entries):
+            own = [e for e in entries if e["label"] == label]
+            rates = [e["yaw_rate"] for e in own]
+            style = {"lw": 1.0, "ms": 4, "label": label} | look[label]
+            position.errorbar(
+                rates,
+                [e["metrics"][metric]["mean"] for e in own],
+                [e["metrics"][metric]["deviation"] for e in own],
+                capsize=2,
+                **style,
+            )
+            attitude.plot(rates, [1e3 * tilt_error(e) for e in own], **style)
+        position.set_title(ground, fontsize=9)
+        for axes in (position, attitude):
+            axes.set_yscale("log")
+            axes.set_yticks(TICKS, [f"{r:g}" for r in TICKS])
+            axes.minorticks_off()
+        attitude.set_xlabel("yaw rate, rad/s")
+    panels[0, 0].set_ylabel("distance to the point, mm")
+    panels[1, 0].set_ylabel("trunk from the plane, rms, mrad")
+    add_legend(figure, panels[0, 0])
+    return figure
+
+
+FIGURES = {
+    "fig6": draw_fig6,
+    "fig7": draw_fig7,
+    "fig8": draw_fig8,
+    "fig9": draw_fig9,
+    "fig10": draw_fig10,
+}
 
 
 def main() -> int:

@@ -2,6 +2,7 @@
 
 import os
 import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
 import mujoco
@@ -22,24 +23,32 @@ def data_folders() -> list[Path]:
     return folders
 
 
-def robot_file(run: Run) -> Path:
-    """The MJCF that `robot` of run.toml names: a folder under robots/, or a file."""
-    robot = run.config["robot"]
+def find_robot(robot: str, folders: Iterable[Path] = ()) -> Path:
+    """The MJCF that the parameter `robot` names: a folder under robots/, or a file, which may be
+    relative to one of `folders`."""
     if robot.endswith(".xml"):
-        candidates = [Path(robot), *(folder / robot for folder in run.folder.parents)]
+        candidates = [Path(robot), *(folder / robot for folder in folders)]
     else:
         candidates = [folder / "robots" / robot / f"{robot}.xml" for folder in data_folders()]
     for candidate in candidates:
         if candidate.is_file():
             return candidate
-    raise RunError(
-        f"{run.folder / 'run.toml'}: robot {robot!r} not found; tried "
-        f"{', '.join(str(c) for c in candidates)}"
-    )
+    raise RunError(f"robot {robot!r} not found; tried {', '.join(str(c) for c in candidates)}")
+
+
+def robot_file(run: Run) -> Path:
+    """The MJCF of a run's robot."""
+    try:
+        return find_robot(run.config["robot"], run.folder.parents)
+    except RunError as error:
+        raise RunError(f"{run.folder / 'run.toml'}: {error}") from None
 
 
 def load_model(run: Run) -> mujoco.MjModel:
-    file = robot_file(run)
+    return read_model(robot_file(run))
+
+
+def read_model(file: Path) -> mujoco.MjModel:
     try:
         return mujoco.MjModel.from_xml_path(str(file))
     except ValueError as error:
@@ -73,7 +82,7 @@ class Poser:
             raise RunError(f"the robot has {len(hinges)} joints named {leg}...; expected 3")
         return sorted(hinges, key=lambda j: self.model.jnt_bodyid[j])  # parents come first
 
-    def set(self, row: np.void) -> mujoco.MjData:
+    def set(self, row: Mapping[str, np.ndarray] | np.void) -> mujoco.MjData:
         roll, pitch, yaw = row["true_rpy"]
         quaternion = np.zeros(4)
         mujoco.mju_euler2Quat(quaternion, np.array([yaw, pitch, roll]), "zyx")

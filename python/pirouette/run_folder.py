@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pirouette import __version__
+from pirouette.errors import Error
 from pirouette.ground import Ground
 
 LEGS = ("FR", "FL", "RR", "RL")  # order of every per-leg column of the trace
@@ -25,7 +26,7 @@ LEAST_COLUMNS = (
 )
 
 
-class RunError(Exception):
+class RunError(Error):
     """A folder that cannot be read; the text names the file and what is wrong with it."""
 
 

@@ -115,6 +115,15 @@ TEST_F(ExperimentFiles, KeepTheTraceOfTheFirstSeedWhereAsked) {
   }
 }
 
+TEST_F(ExperimentFiles, KeepATraceForEachOfSeveralValues) {
+  const Result<Experiment> loaded =
+      load(good_but("torsional_friction = 0.02", "torsional_friction = [0.005, 0.02]"));
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  for (const ExperimentTrial& trial : loaded.value().trials) {
+    EXPECT_EQ(trial.keep_trace, trial.config.profile == "nominal" && trial.seed == 3);
+  }
+}
+
 TEST_F(ExperimentFiles, HoldPrintedFiguresAndBounds) {
   const Result<Experiment> loaded = load(kGood);
   ASSERT_TRUE(loaded);
@@ -123,6 +132,41 @@ TEST_F(ExperimentFiles, HoldPrintedFiguresAndBounds) {
   ASSERT_EQ(loaded.value().bounds.size(), 1u);
   EXPECT_EQ(loaded.value().bounds.front().max, 5.0);
   EXPECT_FALSE(loaded.value().bounds.front().min);
+}
+
+TEST_F(ExperimentFiles, HoldTheBoundsOfARow) {
+  const Result<Experiment> loaded =
+      load(good_but("controller = \"pirouette\"",
+                    "controller = \"pirouette\"\nmax = {fell = 0, com.drift_per_turn_mm = 0.5}"));
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  const std::vector<ExperimentBound>& bounds = loaded.value().bounds;
+  ASSERT_EQ(bounds.size(), 3u);
+  EXPECT_EQ(bounds[0].row, "ours");
+  EXPECT_EQ(bounds[0].metric, "com.drift_per_turn_mm");
+  EXPECT_EQ(bounds[0].max, 0.5);
+  EXPECT_EQ(bounds[1].metric, "fell");
+}
+
+TEST_F(ExperimentFiles, HoldBoundsRelativeToAnotherRow) {
+  const Result<Experiment> loaded = load(good_but("max = 5.0", "share = 0.5\nof = \"baseline\""));
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  EXPECT_EQ(loaded.value().bounds.front().relative_to, "baseline");
+  EXPECT_EQ(loaded.value().bounds.front().share, 0.5);
+  EXPECT_EQ(errors_of("max = 5.0", "share = 0.5"), "33: bounds: share and of go together");
+  EXPECT_EQ(errors_of("max = 5.0", "share = 0.5\nof = \"mine\""),
+            "33: bounds.of: given \"mine\"; allowed: \"baseline\", \"ours\"");
+}
+
+TEST_F(ExperimentFiles, HoldFiguresPrintedForAnUnnamedValue) {
+  const std::string axis = "axis = \"plant.torsional_friction\"\n";
+  const Result<Experiment> loaded =
+      load(good_but("[paper.metrics]", axis + "among = [0.005, 0.02]\n[paper.metrics]"));
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  EXPECT_EQ(loaded.value().printed.front().among, loaded.value().axes.front());
+  EXPECT_EQ(errors_of("[paper.metrics]", axis + "among = [0.01]\n[paper.metrics]"),
+            "32: paper.among: given 0.01; allowed: 0.005, 0.02");
+  EXPECT_EQ(errors_of("[paper.metrics]", "among = [0.005]\n[paper.metrics]").substr(0, 23),
+            "28: paper.axis: missing");
 }
 
 TEST_F(ExperimentFiles, LetTheCommandLineChangeSeedsAndTurns) {
@@ -163,7 +207,7 @@ TEST_F(ExperimentFiles, NameWhatIsWrongWithTheExperimentItself) {
             "32: bounds.row: given \"ours\"; allowed: \"baseline\", \"\"");
   EXPECT_EQ(errors_of("row = \"MIT\"", "row = \"ETH\""),
             "28: paper.row: no row has paper = \"ETH\"");
-  EXPECT_EQ(errors_of("max = 5.0", ""), "33: bounds: needs min or max");
+  EXPECT_EQ(errors_of("max = 5.0", ""), "33: bounds: needs min, max, or share and of");
   EXPECT_EQ(errors_of("plant.torsional_friction = 0.02", "plant.torsional_friction = 0.03"),
             "24: trace.plant.torsional_friction: given 0.03; allowed: a value of an axis");
 }
@@ -171,8 +215,13 @@ TEST_F(ExperimentFiles, NameWhatIsWrongWithTheExperimentItself) {
 TEST(Experiments, OfTheProjectAreValid) {
   const std::vector<std::string> names = known_experiments();
   EXPECT_GE(names.size(), 4u);
-  for (const std::string& name : names) {
-    const Result<Experiment> experiment = load_experiment(experiment_path(name));
+  std::vector<fs::path> files;
+  for (const std::string& name : names) files.push_back(experiment_path(name));
+  for (const char* name : {"flat", "uneven"}) {
+    files.push_back(experiment_path(std::string("acceptance/") + name));
+  }
+  for (const fs::path& file : files) {
+    const Result<Experiment> experiment = load_experiment(file);
     EXPECT_TRUE(experiment) << experiment.errors().front().to_string();
   }
 }

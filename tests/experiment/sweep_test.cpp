@@ -177,6 +177,66 @@ max = 0
       << missed.front();
 }
 
+/// A result as if the tiny experiment had been run: `radius(row, level)` mm, or a fall.
+template <class Radius>
+SweepResult made_up(const Experiment& experiment, Radius&& radius) {
+  SweepResult result;
+  for (const ExperimentTrial& trial : experiment.trials) {
+    const std::optional<double> mm = radius(trial.row, trial.levels.front());
+    result.keys.emplace_back("key");
+    result.values.push_back({{"fell", mm ? 0.0 : 1.0}, {"com.radius_mean_mm", mm}});
+  }
+  return result;
+}
+
+TEST_F(Sweeps, JudgeABoundByAnotherRowAtTheSameLevel) {
+  const Experiment experiment = load(std::string(kTiny) + R"([[bounds]]
+row = "ours"
+metric = "com.radius_mean_mm"
+max = 1.0
+share = 0.5
+of = "asc"
+)");
+  // asc: 10 and 20 mm, so that 6 and 11 mm are allowed.
+  const SweepResult good = made_up(experiment, [](std::size_t row, std::size_t level) {
+    return row == 0 ? (level == 0 ? 10.0 : 20.0) : (level == 0 ? 5.9 : 10.9);
+  });
+  const Report held(experiment, good);
+  EXPECT_TRUE(held.missed_bounds().empty());
+  EXPECT_EQ(held.check_bounds().front().max, 6.0);
+  EXPECT_NE(held.markdown().find("Acceptance: 2 of 2 bounds hold"), std::string::npos);
+
+  const SweepResult bad = made_up(experiment, [](std::size_t row, std::size_t level) {
+    if (row == 0 && level == 1) return std::optional<double>();
+    return std::optional(row == 0 ? 10.0 : 6.1);
+  });
+  const std::vector<std::string> missed = Report(experiment, bad).missed_bounds();
+  ASSERT_EQ(missed.size(), 2u);
+  EXPECT_NE(missed[0].find("6.1, above 6"), std::string::npos) << missed[0];
+  EXPECT_NE(missed[1].find("cannot be judged: it is absent in asc"), std::string::npos);
+}
+
+TEST_F(Sweeps, TellWhichUnnamedValueIsNearestToThePrintedFigures) {
+  const Experiment experiment = load(tiny_but(
+      "profile = \"nominal\"\n[paper.metrics]",
+      "profile = \"nominal\"\naxis = \"plant.friction\"\namong = [0.6, 0.8]\n[paper.metrics]"));
+  // Printed are 11.2 mm: a factor of 2 below one and of 4 above the other.
+  const SweepResult result =
+      made_up(experiment, [](std::size_t, std::size_t level) { return level == 0 ? 22.4 : 2.8; });
+  const std::string text = Report(experiment, result).markdown();
+  EXPECT_NE(text.find("- ASC: nearest is 0.6 (0.6 2, 0.8 4)."), std::string::npos) << text;
+}
+
+TEST_F(Sweeps, SayOnceWhatAllRowsHaveInCommon) {
+  const Experiment experiment = load();
+  const std::string text =
+      Report(experiment, made_up(experiment, [](auto, auto) { return 1.0; })).markdown();
+  EXPECT_NE(text.find("Everywhere: terrain flat; torsional friction 0.005 m;"), std::string::npos)
+      << text;
+  EXPECT_NE(text.find("| row | duty | tracker | plant.friction | falls |"), std::string::npos)
+      << text;
+}
+
 TEST(TrialKey, StandsForTheConfiguration) {
   Config config = load_config().value();
   const std::string key = trial_key(config);

@@ -172,6 +172,37 @@ TEST(PlaneEstimator, ApproachesANewPlaneWithItsTimeConstantWhereverTheRobotIs) {
   }
 }
 
+TEST(PlaneEstimator, TakesTheRememberedPlaneInPlaceOfTheFeets) {
+  PlaneEstimator estimator(unfiltered());
+  const TerrainPlane remembered{
+      .a0 = -0.05, .a1 = 0.1, .a2 = 0.15, .residual_rms = 0.012, .weight = 80.0};
+  PlaneInput in = feet_on(kSlope, Vec2(1.0, -2.0));
+  in.remembered = remembered;
+  const TerrainPlane plane = estimator.update(in, 0.002);
+  expect_plane(plane, remembered, 1e-14);
+  EXPECT_EQ(plane.residual_rms, remembered.residual_rms);
+  EXPECT_EQ(plane.weight, remembered.weight);
+
+  in.remembered.reset();
+  expect_plane(estimator.update(in, 0.002), kSlope, 1e-13);
+}
+
+TEST(PlaneEstimator, LimitsAndFiltersTheRememberedPlaneToo) {
+  TerrainConfig config = unfiltered();
+  config.max_slope = 0.5;
+  config.filter_time = 0.3;
+  PlaneEstimator estimator(config);
+  const Vec2 centre(1.0, 2.0);
+  PlaneInput in = feet_on({}, centre);
+  in.remembered = TerrainPlane{.a0 = 0.1, .a1 = 0.8, .a2 = -0.6, .weight = 80.0};
+  TerrainPlane plane;
+  for (int i = 0; i < 150; ++i) plane = estimator.update(in, 0.002);
+  const double share = 1.0 - std::exp(-1.0);
+  EXPECT_NEAR(plane.a1, share * 0.4, 1e-12);
+  EXPECT_NEAR(plane.a2, share * -0.3, 1e-12);
+  EXPECT_NEAR(plane.height(centre), share * in.remembered->height(centre), 1e-12);
+}
+
 TEST(PlaneEstimator, SwitchedOffKeepsThePlaneItWasGiven) {
   TerrainConfig config;
   config.estimation = TerrainEstimation::kOff;

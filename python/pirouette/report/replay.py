@@ -13,20 +13,19 @@ import numpy as np
 import viser
 
 from pirouette import style
-from pirouette.robot import Poser, load_model, visible_shapes
+from pirouette.robot import load_model
 from pirouette.run_folder import LEGS, Run
+from pirouette.scene import TILE, RobotNodes, add_ground
 
 FRAME_RATE = 25.0  # Hz, about
 LONGEST = 120.0  # s, of a run that is shown: its end
 MARGIN = 0.7  # m, of ground around the path
 GAP = 0.2  # m, between the grounds of two runs
-TILE = 0.1  # m
 METRES_PER_NEWTON = 0.0025
 LEAST_FORCE = 1.0  # N, that is drawn
 PLANE_SIZE = 0.5  # m
 ABOVE_GROUND = 0.004  # m, at which flat things are drawn
 STICK = 0.1  # m, of a vertex of weight 1
-LIGHT_TILE, DARK_TILE = (214, 216, 220), (190, 193, 199)
 
 
 def page(runs: list[Run]) -> str:
@@ -119,27 +118,12 @@ class Actor:
             "plane",
         )
         scene.add_frame(root, show_axes=False, position=origin)
-        self.add_ground(low, high)
+        add_ground(scene, root, run.ground.cropped(low, high, TILE))
         self.add_path(index)
-        self.add_robot(load_model(run))
+        self.robot = RobotNodes(scene, root, load_model(run))
         self.forces = self.add_forces() if run.has("true_foot_force", "true_foot_position") else []
         self.lift_off = rows["contact_point"][0].copy() if self.shows_plan else None
         self.plan = self.add_plan() if self.shows_plan else None
-
-    def add_ground(self, low: np.ndarray, high: np.ndarray) -> None:
-        ground = self.run.ground.cropped(low, high, TILE)
-        for faces, colour, name in zip(
-            ground.tiles(TILE), (LIGHT_TILE, DARK_TILE), ("light", "dark"), strict=True
-        ):
-            self.scene.add_mesh_simple(
-                f"{self.root}/terrain/{name}",
-                ground.vertices(),
-                faces,
-                color=colour,
-                flat_shading=True,
-                side="double",
-                cast_shadow=False,
-            )
 
     def add_path(self, index: int) -> None:
         """The whole path of the centre of mass on the ground, the commanded point, the name."""
@@ -176,25 +160,6 @@ class Actor:
         near = (1 - u) * ground.z[row, column] + u * ground.z[row, column + 1]
         far = (1 - u) * ground.z[row + 1, column] + u * ground.z[row + 1, column + 1]
         return (1 - v) * near + v * far
-
-    def add_robot(self, model) -> None:
-        self.poser = Poser(model)
-        names = {0: f"{self.root}/robot"}
-        self.scene.add_frame(names[0], show_axes=False)
-        self.bodies = {}
-        for body in range(1, model.nbody):
-            parent = names[int(model.body_parentid[body])]
-            names[body] = f"{parent}/{model.body(body).name or body}"
-            self.bodies[body] = self.scene.add_frame(names[body], show_axes=False)
-            for i, (colour, mesh) in enumerate(visible_shapes(model, body).items()):
-                self.scene.add_mesh_simple(
-                    f"{names[body]}/shape {i}",
-                    mesh.vertices,
-                    mesh.faces,
-                    color=colour,
-                    flat_shading=True,
-                    receive_shadow=False,
-                )
 
     def add_forces(self) -> list[viser.ArrowsHandle]:
         return [
@@ -250,9 +215,7 @@ class Actor:
         """Moves everything to the time since the first shown row; stays at the end."""
         index = int(np.searchsorted(self.time, self.time[0] + elapsed - 1e-9))
         row = self.rows[min(index, len(self.rows) - 1)]
-        self.poser.set(row)
-        for body, node in self.bodies.items():
-            node.position, node.wxyz = self.poser.parent_pose(body)
+        self.robot.show(row)
         for leg, arrow in enumerate(self.forces):
             force = row["true_foot_force"][leg]
             arrow.visible = bool(np.linalg.norm(force) > LEAST_FORCE)

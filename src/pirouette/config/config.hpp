@@ -323,7 +323,8 @@ struct EstimationConfig {
     v(s.gyro_rest_samples, "gyro_rest_samples", "samples", Range{0.0, 1e6},
       "Samples at rest that the prior of no gyro bias is worth: (noise / bias)^2.");
     v(s.tilt_bias_time, "tilt_bias_time", "s", Range{0.0, 1000.0},
-      "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: off.");
+      "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: "
+      "off.");
     v(s.contact_debounce, "contact_debounce", "ticks", Range{1, 100},
       "A contact flag counts when it has been the same for this long.");
   }
@@ -342,7 +343,8 @@ struct CreepConfig {
     v(s.mode, "mode",
       "Slip of twisting feet down a slope. off: none; stored: creep.calibrated_friction and "
       "creep.calibrated_torsion hold; online: torsional friction from the stance forces.");
-    v(s.calibrated_friction, "calibrated_friction", "1", Range{0.05, 2.0}, "Sliding friction of the feet, calibrated.");
+    v(s.calibrated_friction, "calibrated_friction", "1", Range{0.05, 2.0},
+      "Sliding friction of the feet, calibrated.");
     v(s.calibrated_torsion, "calibrated_torsion", "m", Range{0.0, 0.1},
       "Torsional friction of the feet: stored value, and prior of the online estimate.");
     v(s.patch_ratio, "patch_ratio", "m", Range{0.0, 0.1},
@@ -359,7 +361,7 @@ struct AidConfig {
   bool enabled = true;
   double time_constant = 4.0;
   double ramp_time = 5.0;
-  double timeout = 1.0;
+  double timeout = 2.0;
   double max_offset = 0.5;
 
   template <class Self, class Visit>
@@ -370,7 +372,7 @@ struct AidConfig {
     v(s.ramp_time, "ramp_time", "s", Range{0.0, 100.0},
       "After its first measurement the aid gains influence over this time.");
     v(s.timeout, "timeout", "s", Range{0.01, 100.0},
-      "Without a measurement for longer the offset is held.");
+      "An aid that was silent for longer is ramped in again.");
     v(s.max_offset, "max_offset", "m", Range{0.0, 10.0},
       "A measurement further from the odometry than this beyond the offset is an outlier.");
   }
@@ -470,7 +472,8 @@ struct JointConfig {
     v(s.filter_time, "filter_time", "s", Range{0.0, 0.1},
       "Time constant of the low-pass filter of the feed-forward torque; 0: none.");
     v(s.friction_compensation, "friction_compensation", "1", Range{0.0, 1.0},
-      "Share of the robot file's joint friction and damping that the feed-forward torque overcomes.");
+      "Share of the robot file's joint friction and damping that the feed-forward torque "
+      "overcomes.");
     v(s.max_torque_rate, "max_torque_rate", "N m/s", Range{1.0, 1e7},
       "Rate limit of the feed-forward torque.");
     v(s.max_position_rate, "max_position_rate", "rad/s", Range{0.1, 1e4},

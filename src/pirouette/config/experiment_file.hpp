@@ -25,6 +25,8 @@ struct ExperimentRow {
 struct ExperimentAxis {
   std::string key;                  ///< dotted, such as plant.torsional_friction
   std::vector<std::string> values;  ///< as TOML literals without quotes
+
+  bool operator==(const ExperimentAxis&) const = default;
 };
 
 /// One run: a row, a value of each axis, a seed.
@@ -47,6 +49,9 @@ struct PrintedResult {
   std::string row;  ///< as in ExperimentRow::paper
   std::string profile;
   std::map<std::string, double> metrics;
+  /// They hold for one of these values of an axis, and the source does not say which; no key: for
+  /// all trials.
+  ExperimentAxis among;
 };
 
 /// Acceptance: the mean of `metric` over the seeds, in `row` or, empty, everywhere.
@@ -54,13 +59,18 @@ struct ExperimentBound {
   std::string row;
   std::string metric;
   std::optional<double> min, max;
+  /// The largest allowed is max, or 0, plus `share` times the mean of `metric` in the row
+  /// `relative_to`; empty: max alone.
+  std::string relative_to;
+  double share = 0.0;
 };
 
 struct Experiment {
   std::filesystem::path file;
   std::string name;  ///< the file's, without its extension
   std::string title;
-  std::string source;  ///< of the printed results
+  std::string source;  ///< of the printed results; empty: nobody's
+  std::string note;    ///< what a reader of the tables must know; may be empty
   std::vector<ExperimentRow> rows;
   std::vector<ExperimentAxis> axes;
   std::vector<std::int64_t> seeds;

@@ -62,8 +62,8 @@ FootOdometry Localization::foot_odometry(const TickTrace& trace, Leg leg) const 
 Vec3 Localization::joint_feedback_force(const TickTrace& trace, Leg leg) const {
   const LegCommand& c = trace.command[leg];
   const Vec3& q = trace.sensors.joint_position[leg];
-  const Vec3 tau = c.kp.cwiseProduct(c.q - q) +
-                   c.kd.cwiseProduct(c.dq - trace.sensors.joint_velocity[leg]);
+  const Vec3 tau =
+      c.kp.cwiseProduct(c.q - q) + c.kd.cwiseProduct(c.dq - trace.sensors.joint_velocity[leg]);
   const Vec3 n_B = trace.state.R_WB.transpose() * trace.contacts[leg].n_W;
   const Mat3 J_C = foot_.contact_jacobian(legs_[leg], q, n_B);
   // Near a straight leg a small torque would pass for a large force.
@@ -105,8 +105,8 @@ void Localization::estimate(RobotModel& model, double dt, TickTrace& trace) noex
     state.v_WB_W = sensors.truth->v_WB_W;
     state.w_WB_B = sensors.truth->w_WB_B;
   } else {
-    AttitudeInput attitude_in{sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W,
-                              !trace.gait.walking, {}};
+    AttitudeInput attitude_in{
+        sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking, {}};
     for (const Leg leg : kLegs) attitude_in.p_BF[leg] = trace.feet[leg].p_BF;
     const Attitude attitude = attitude_filter_.update(attitude_in, dt);
     if (trace.gait.walking && trace.ground.known && !trace.ground.stepped) {

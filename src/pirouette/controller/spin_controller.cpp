@@ -235,8 +235,8 @@ void SpinController::Impl::follow_contacts() {
 }
 
 void SpinController::Impl::plan_body(const MotionCommand& command, double dt) {
-  trace.aid_offset = aid_offset.update(trace.sensors.aid, trace.state.p_WB.head<2>(),
-                                       trace.state.time, dt);
+  trace.aid_offset =
+      aid_offset.update(trace.sensors.aid, trace.state.p_WB.head<2>(), trace.state.time, dt);
   // The set-point lives in the aid's frame, everything else in the odometry's.
   RobotState in_aid_frame = trace.state;
   in_aid_frame.p_WG.head<2>() += trace.aid_offset;

@@ -28,7 +28,10 @@ Vec3 turn_over_feet(const PerLeg<Vec3>& before, const PerLeg<Vec3>& now) {
 }
 
 void AttitudeFilter::calibrate(const AttitudeInput& in, double dt) noexcept {
-  if (rest_.samples == 0.0) rest_.p_BF = in.p_BF;
+  if (rest_.samples == 0.0) {
+    rest_.p_BF = in.p_BF;
+    rest_.bias_before = gyro_bias_;
+  }
   rest_.samples += 1.0;
   rest_.time += dt;
   rest_.turn_by_gyro += dt * in.w_WB_B;
@@ -40,8 +43,9 @@ void AttitudeFilter::calibrate(const AttitudeInput& in, double dt) noexcept {
   const double spread = rest_.samples * rest_.sum_tt - square(rest_.sum_t);
   if (spread <= 0.0) return;
   const Vec3 slope = (rest_.samples * rest_.sum_tx - rest_.sum_t * rest_.sum_x) / spread;
-  // Shrunk to the prior "no bias" while there are few samples.
-  gyro_bias_ = rest_.samples / (rest_.samples + config_.gyro_rest_samples) * slope;
+  // Shrunk to what was known before (nothing: no bias) while there are few samples.
+  const double share = rest_.samples / (rest_.samples + config_.gyro_rest_samples);
+  gyro_bias_ = rest_.bias_before + share * (slope - rest_.bias_before);
 }
 
 Attitude AttitudeFilter::update(const AttitudeInput& in, double dt) noexcept {

@@ -49,10 +49,11 @@ class AttitudeFilter {
   void calibrate(const AttitudeInput& in, double dt) noexcept;
 
   struct Rest {
-    PerLeg<Vec3> p_BF{};                 ///< m, at its beginning
-    Vec3 turn_by_gyro = Vec3::Zero();    ///< rad
-    double samples = 0.0, time = 0.0;    ///< -, s
-    double sum_t = 0.0, sum_tt = 0.0;    ///< of the regression on time
+    PerLeg<Vec3> p_BF{};               ///< m, at its beginning
+    Vec3 bias_before = Vec3::Zero();   ///< rad/s
+    Vec3 turn_by_gyro = Vec3::Zero();  ///< rad
+    double samples = 0.0, time = 0.0;  ///< -, s
+    double sum_t = 0.0, sum_tt = 0.0;  ///< of the regression on time
     Vec3 sum_x = Vec3::Zero(), sum_tx = Vec3::Zero();
   };
   Rest rest_;

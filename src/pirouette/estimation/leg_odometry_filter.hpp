@@ -13,7 +13,7 @@ struct FootOdometry {
   Vec3 v_BF_W =
       Vec3::Zero();  ///< m/s, its velocity relative to the trunk origin: omega x R p_BF + R J_v dq
   Vec3 v_WF_stance_W = Vec3::Zero();  ///< m/s, its velocity on the ground: rolling, and creep
-  double trust = 0.0;                  ///< in [0, 1]; 0: in the air, nothing it reports is used
+  double trust = 0.0;                 ///< in [0, 1]; 0: in the air, nothing it reports is used
   double centre_height = 0.0;  ///< m, expected height of the sphere centre when on the ground
   bool use_height = false;     ///< false: no opinion on the height of the ground
 };

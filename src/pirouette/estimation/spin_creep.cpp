@@ -3,11 +3,11 @@
 namespace pirouette {
 namespace {
 
-constexpr double kPriorForce = 100.0;      // N, gives the prior moment its size
-constexpr double kMinTwistRate = 0.1;      // rad/s, below it the feet may stick
-constexpr double kMinTorsional = 1e-4;     // m
-constexpr double kMaxConeShare = 0.95;     // of sliding friction that the slope may take
-constexpr double kMaxCoefficient = 0.15;   // m, k of mu_t = 0.02 and mu = 0.4 with a margin
+constexpr double kPriorForce = 100.0;     // N, gives the prior moment its size
+constexpr double kMinTwistRate = 0.1;     // rad/s, below it the feet may stick
+constexpr double kMinTorsional = 1e-4;    // m
+constexpr double kMaxConeShare = 0.95;    // of sliding friction that the slope may take
+constexpr double kMaxCoefficient = 0.15;  // m, k of mu_t = 0.02 and mu = 0.4 with a margin
 
 /// Share of torsional friction that is left beside the tangential force.
 double cone_factor(double force_share, double friction) {
@@ -34,7 +34,7 @@ double SpinCreep::coefficient(double force_share) const noexcept {
     return config_.calibrated_torsion / (square(config_.calibrated_friction) * cone);
   }
   const double moment =
-      std::clamp(mean_moment_ / mean_force_, kMinTorsional, config_.max_torsional_friction);
+      std::max(kMinTorsional, std::min(mean_moment_ / mean_force_, config_.max_torsional_friction));
   if (config_.patch_ratio > 0.0) return square(config_.patch_ratio) / moment;
   return moment / square(config_.calibrated_friction * cone);
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,14 @@ struct ReportEntry {
   std::string trace;                      ///< path within the sweep's folder; empty: none
 };
 
+/// An acceptance bound at one entry.
+struct BoundCheck {
+  const ExperimentBound* bound = nullptr;
+  const ReportEntry* entry = nullptr;
+  std::optional<double> max;  ///< of the bound, with its share of the other row
+  std::string missed;         ///< why; empty: it holds
+};
+
 /// Points into `experiment`, which must outlive it.
 struct Report {
   explicit Report(const Experiment& experiment, const SweepResult& result);
@@ -43,7 +52,9 @@ struct Report {
   std::string csv() const;
   /// One line for each trial, in the order of the experiment.
   std::string trials_csv() const;
-  /// A sentence for each acceptance bound that is missed; a fall misses it too.
+  /// Each acceptance bound wherever it applies, in the order of the file. A fall misses it too.
+  std::vector<BoundCheck> check_bounds() const;
+  /// A sentence for each that is missed.
   std::vector<std::string> missed_bounds() const;
 };
 

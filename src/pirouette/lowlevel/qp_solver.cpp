@@ -16,6 +16,12 @@ using eiquadprog::solvers::EiquadprogFast;
 }  // namespace
 
 struct QpSolver::Workspace {
+  Workspace(int unit, int rows_per_unit, int units, int max_iterations)
+      : Workspace(unit * units, rows_per_unit * units, max_iterations) {
+    variables_per_unit = unit;
+    rows = rows_per_unit;
+  }
+
   Workspace(int n, int m, int max_iterations)
       : factor(n, n), slack(m), negative_lower(m), no_equalities(0, n), no_offsets(0) {
     problem.H.setIdentity(n, n);
@@ -27,6 +33,18 @@ struct QpSolver::Workspace {
     active_set.setMaxIter(max_iterations);
   }
 
+  void find_slack() noexcept {
+    slack = -problem.lower;
+    for (Eigen::Index row = 0, column = 0; row < slack.size();
+         row += rows, column += variables_per_unit) {
+      slack.segment(row, rows).noalias() +=
+          problem.C.block(row, column, rows, variables_per_unit)
+              .lazyProduct(problem.x.segment(column, variables_per_unit));
+    }
+  }
+
+  int variables_per_unit = 1;
+  int rows = 1;  ///< of constraints per unit
   Problem problem;
   Eigen::MatrixXd factor;
   Eigen::VectorXd slack;
@@ -39,7 +57,7 @@ struct QpSolver::Workspace {
 QpSolver::QpSolver(int unit, int rows_per_unit, int max_units, int max_iterations) {
   workspaces_.reserve(static_cast<size_t>(max_units));
   for (int k = 1; k <= max_units; ++k) {
-    workspaces_.push_back(std::make_unique<Workspace>(unit * k, rows_per_unit * k, max_iterations));
+    workspaces_.push_back(std::make_unique<Workspace>(unit, rows_per_unit, k, max_iterations));
   }
   current_ = workspaces_.front().get();
 }
@@ -65,8 +83,7 @@ QpSolution QpSolver::solve() noexcept {
   }
   p.x = -p.g;
   cholesky.solveInPlace(p.x);
-  w.slack.noalias() = p.C * p.x;
-  w.slack -= p.lower;
+  w.find_slack();
   if (!w.slack.allFinite()) {
     p.x.setZero();
     return {SolveStatus::kFailed, 0};

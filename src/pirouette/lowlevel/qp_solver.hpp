@@ -26,7 +26,7 @@ class QpSolver {
   struct Problem {
     Eigen::MatrixXd H;      ///< n x n, both triangles
     Eigen::VectorXd g;      ///< n
-    Eigen::MatrixXd C;      ///< m x n
+    Eigen::MatrixXd C;      ///< m x n, block diagonal: each unit has its own constraints
     Eigen::VectorXd lower;  ///< m
     Eigen::VectorXd x;      ///< n, the solution
   };

@@ -34,7 +34,6 @@ class PositionAidOffset {
   AidConfig config_;
   std::array<Past, kHistory> history_;
   std::size_t recorded_ = 0;
-  Vec2 target_ = Vec2::Zero();  ///< m, last aid - odometry
   Vec2 offset_ = Vec2::Zero();  ///< m
   double heard_for_ = 0.0;      ///< s, with the aid alive
   double silent_for_ = 0.0;     ///< s since its last measurement

@@ -328,6 +328,8 @@ void Plant::push(const Vec3& delta_v_W) {
   impl_->observe();
 }
 
+void Plant::set_friction(double friction) { impl_->friction = friction; }
+
 double Plant::physics_step_us_median() const { return impl_->step_times.median(); }
 
 }  // namespace pirouette

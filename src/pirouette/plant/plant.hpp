@@ -37,6 +37,9 @@ class Plant {
   /// Adds to the trunk's velocity at once: a push. m/s, world axes.
   void push(const Vec3& delta_v_W);
 
+  /// Sliding friction of feet and ground from now on, where the terrain has none of its own.
+  void set_friction(double friction);
+
   double physics_step_us_median() const;  ///< wall-clock cost of one physics step
 
  private:

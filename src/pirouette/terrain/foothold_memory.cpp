@@ -9,13 +9,13 @@
 namespace pirouette {
 namespace {
 
-constexpr double kMinFootholds = 24.0;    // for a plane: three strides of four legs and as many again
-constexpr double kNear = 0.5;             // m, around the robot
+constexpr double kMinFootholds = 24.0;  // for a plane: three strides of four legs and as many again
+constexpr double kNear = 0.5;           // m, around the robot
 constexpr double kMaxFromGradient = 0.5;  // rad, that the climb may differ from the gradient
 constexpr double kMinGradient = 0.03;     // below it there is no direction to climb
 constexpr int kMinFootholdsPerTread = 3;  // fewer are feet on edges
 constexpr double kMaxResidual = 0.004;    // m, rms about the treads; more is no flight of stairs
-constexpr double kReach = 0.05;           // m, beyond the outermost footholds that a tread is taken to go on
+constexpr double kReach = 0.05;  // m, beyond the outermost footholds that a tread is taken to go on
 
 }  // namespace
 
@@ -89,7 +89,12 @@ void FootholdMemory::find_treads() noexcept {
   const auto close = [&] {
     // Of two pieces at one height the feet on the edge between them are left out.
     if (open.count < kMinFootholdsPerTread) return;
-    treads_[tread_count_++] = open;
+    if (tread_count_ > 0 &&
+        std::abs(treads_[tread_count_ - 1].height - open.height) < config_.min_step) {
+      treads_[tread_count_ - 1].to = open.to;
+    } else {
+      treads_[tread_count_++] = open;
+    }
     kept += static_cast<std::size_t>(open.count);
     squares += open.squares;
   };
@@ -108,7 +113,8 @@ void FootholdMemory::find_treads() noexcept {
   }
   close();
   constexpr double kMinShareKept = 0.7;
-  valid_ = tread_count_ >= 2 && static_cast<double>(kept) > kMinShareKept * static_cast<double>(n) &&
+  valid_ = tread_count_ >= 2 &&
+           static_cast<double>(kept) > kMinShareKept * static_cast<double>(n) &&
            std::sqrt(squares / static_cast<double>(kept)) < kMaxResidual;
 }
 

@@ -16,12 +16,12 @@ struct RememberedGround {
   double height = 0.0;      ///< m, of the tread
 };
 
-/// Footholds of the last strides in the odometry's frame, seen along the direction of the climb. The
-/// gradient of the plane through them is a first guess of it, several degrees off on steps; from
-/// there it turns, foothold by foothold, to where the heights in their order along it jump least.
-/// Sorted along it they fall into treads: neighbours that differ in height by more than min_step
-/// have an edge between them. Single odd heights (a foot on an edge) make no tread. Where the
-/// treads do not explain the heights, as on rough ground, the memory says nothing. It assumes
+/// Footholds of the last strides in the odometry's frame, seen along the direction of the climb.
+/// The gradient of the plane through them is a first guess of it, several degrees off on steps;
+/// from there it turns, foothold by foothold, to where the heights in their order along it jump
+/// least. Sorted along it they fall into treads: neighbours that differ in height by more than
+/// min_step have an edge between them. Single odd heights (a foot on an edge) make no tread. Where
+/// the treads do not explain the heights, as on rough ground, the memory says nothing. It assumes
 /// straight stairs, and follows the odometry's drift by forgetting. docs/terrain.md#memory
 class FootholdMemory {
  public:

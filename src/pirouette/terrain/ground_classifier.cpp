@@ -36,9 +36,8 @@ void GroundClassifier::add(Leg leg, const Vec3& p_WF) noexcept {
   estimate_.known = n == points.size();
   estimate_.residual = plane.residual_rms;
   estimate_.step_height = highest - lowest;
-  estimate_.stepped =
-      estimate_.residual >
-      (estimate_.stepped ? config_.step_residual_release : config_.step_residual);
+  estimate_.stepped = estimate_.residual >
+                      (estimate_.stepped ? config_.step_residual_release : config_.step_residual);
 }
 
 }  // namespace pirouette

@@ -37,7 +37,7 @@ struct TickTrace {
   int remembered_treads = 0;
   CreepEstimate creep;
   Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk
-  Vec2 aid_offset = Vec2::Zero();  ///< m, from the odometry's position to the aid's
+  Vec2 aid_offset = Vec2::Zero();   ///< m, from the odometry's position to the aid's
   GaitPhase gait;
   PathPoint path;
   TwistCommand twist;

@@ -1,0 +1,99 @@
+// The compiled part of the Python package. python/pirouette/api.py is what users see of it.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "arrays.hpp"
+#include "bindings.hpp"
+#include "pirouette/config/config_doc.hpp"
+#include "pirouette/config/toml.hpp"
+#include "pirouette/config/validate.hpp"
+#include "pirouette/experiment/trial.hpp"
+
+namespace pirouette::python {
+
+using namespace nanobind::literals;
+
+void raise(const Errors& errors) {
+  std::string text;
+  for (Error error : errors) {
+    if (error.file.starts_with("--")) error.file.clear();  // options of the program
+    text += (text.empty() ? "" : "\n") + error.to_string();
+  }
+  const nb::object type = nb::module_::import_("pirouette.errors").attr("Error");
+  PyErr_SetString(type.ptr(), text.c_str());
+  throw nb::python_error();
+}
+
+InputArray as_array(nb::handle given, const char* name, std::initializer_list<std::size_t> shape) {
+  const nb::object array =
+      nb::module_::import_("numpy").attr("ascontiguousarray")(given, "dtype"_a = "float64");
+  nb::list wanted;
+  for (const std::size_t n : shape) wanted.append(n);
+  const nb::object allowed = nb::tuple(wanted);
+  const nb::object actual = array.attr("shape");
+  if (!actual.equal(allowed)) {
+    raise({{"", 0, name,
+            std::string("given shape ") + nb::str(actual).c_str() +
+                "; allowed: " + nb::str(allowed).c_str()}});
+  }
+  return nb::cast<InputArray>(array);
+}
+
+namespace {
+
+Config load(const std::optional<std::string>& robot, const std::optional<std::string>& controller,
+            const std::optional<std::string>& profile, const std::optional<std::string>& file,
+            const std::vector<std::string>& overrides) {
+  ConfigSources sources{robot, controller, profile, std::nullopt, overrides};
+  if (file) sources.file = *file;
+  return value_or_raise(load_config(sources));
+}
+
+/// Runs a trial with the interpreter unlocked; its trace goes to the file `trace`. The text of
+/// metrics.json. Ctrl-C ends it.
+std::string run(const Config& config, const std::string& trace) {
+  TraceFile file = value_or_raise(TraceFile::create(trace));
+  TrialOptions options;
+  options.trace = &file;
+  options.progress = [](const TrialProgress&) {
+    const nb::gil_scoped_acquire held;
+    return PyErr_CheckSignals() == 0;
+  };
+  const Result<TrialResult> trial = [&] {
+    const nb::gil_scoped_release released;
+    return run_trial(config, options);
+  }();
+  if (!trial) raise(trial.errors());
+  if (trial.value().interrupted) throw nb::python_error();
+  if (const auto error = file.finish()) raise({*error});
+  return to_json(trial.value().metrics);
+}
+
+}  // namespace
+}  // namespace pirouette::python
+
+NB_MODULE(_core, module) {
+  using namespace nanobind::literals;
+  using namespace pirouette;
+  namespace nb = nanobind;
+
+  module.doc() = "The compiled part of pirouette; import pirouette instead.";
+  module.attr("__version__") = version();
+  nb::class_<Config>(module, "Config", "A checked configuration: every parameter has its value.")
+      .def_prop_ro("toml", &dump_toml, "The whole of it as TOML; loading it gives the same.");
+  module.def("load_config", &python::load, nb::arg("robot").none() = nb::none(),
+             nb::arg("controller").none() = nb::none(), nb::arg("profile").none() = nb::none(),
+             nb::arg("file").none() = nb::none(), "overrides"_a = std::vector<std::string>{},
+             "Defaults, robot, controller and plant profile, a TOML file, and key=value overrides, "
+             "each above those before it.");
+  module.def("known_controllers", &known_controllers, "Names of the controller bundles.");
+  module.def("run_trial", &python::run, "config"_a, "trace"_a,
+             "Simulates one run; writes the trace to a file, returns metrics.json.");
+  python::define_values(module);
+  python::define_loops(module);
+}

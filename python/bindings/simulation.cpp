@@ -1,0 +1,75 @@
+#include "simulation.hpp"
+
+#include <cmath>
+#include <utility>
+
+#include "pirouette/config/validate.hpp"
+
+namespace pirouette {
+namespace {
+
+Result<Plant> create_plant(const Config& config, const std::string& mjcf) {
+  const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
+  return Plant::create(config, mjcf, start, radians(config.run.start_yaw_deg));
+}
+
+}  // namespace
+
+Result<Simulation> Simulation::create(const Config& config) {
+  const Result<std::string> mjcf = resolve_robot(config);
+  if (!mjcf) return mjcf.errors();
+  Result<SpinController> controller = SpinController::create(config, mjcf.value());
+  if (!controller) return controller.errors();
+  Result<Plant> plant = create_plant(config, mjcf.value());
+  if (!plant) return plant.errors();
+  // The plant has read the same text.
+  const Terrain terrain(parse_terrain(config.plant.terrain).value(),
+                        static_cast<std::uint64_t>(config.run.seed));
+  return Simulation(config, mjcf.value(), terrain, std::move(plant).value(),
+                    std::move(controller).value());
+}
+
+Simulation::Simulation(Config config, std::string mjcf, Terrain terrain, Plant plant,
+                       SpinController controller)
+    : config_(std::move(config)),
+      mjcf_(std::move(mjcf)),
+      terrain_(std::move(terrain)),
+      plant_(std::move(plant)),
+      controller_(std::move(controller)),
+      standing_ticks_(std::llround(config_.gait.stand_time * config_.control.rate)) {
+  command.walk = true;
+  command.v_H = Vec2(config_.run.velocity[0], config_.run.velocity[1]);
+  command.yaw_rate = config_.run.rate;
+  begin();
+}
+
+Errors Simulation::reset() {
+  Result<Plant> plant = create_plant(config_, mjcf_);
+  if (!plant) return plant.errors();
+  plant_ = std::move(plant).value();
+  begin();
+  return {};
+}
+
+void Simulation::begin() {
+  const BaseTruth& start = plant_.truth().base;
+  controller_.reset({start.p_WB, start.R_WB});
+  yaw_.reset(rpy_from_rotation(start.R_WB).yaw);
+  ticks_ = 0;
+  tick();
+}
+
+void Simulation::step(std::int64_t ticks) {
+  for (; ticks > 0; --ticks) {
+    plant_.advance(controller_.trace().command);
+    ++ticks_;
+    tick();
+  }
+}
+
+void Simulation::tick() {
+  yaw_.update(rpy_from_rotation(plant_.truth().base.R_WB).yaw);
+  controller_.tick(plant_.sense(), ticks_ < standing_ticks_ ? MotionCommand{} : command);
+}
+
+}  // namespace pirouette

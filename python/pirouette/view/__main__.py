@@ -1,0 +1,5 @@
+import sys
+
+from pirouette.view import main
+
+sys.exit(main())

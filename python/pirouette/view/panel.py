@@ -1,0 +1,186 @@
+"""Sliders, buttons, keys and the radius beside the picture."""
+
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import viser
+from viser import uplot
+
+from pirouette import _core, style
+from pirouette.errors import Error
+from pirouette.view.live import Live
+
+TERRAINS = (
+    "flat",
+    "slope:5",
+    "slope:10",
+    "slope:10+rough:0.02",
+    "stairs:0.03x0.20",
+    "rough:0.04",
+    "blocks:0.03",
+    "patch:0.3x0.6",
+    "soft:0.02",
+)
+PUSHES = {"ahead": (1, 0), "back": (-1, 0), "left": (0, 1), "right": (0, -1)}
+KEYS = """
+| key | |
+|---|---|
+| I, K | faster forwards, backwards |
+| U, O | faster to the left, to the right |
+| J, L | turn more to the left, to the right |
+| B | stop |
+| N | push |
+| P | pause |
+| R | reset |
+"""
+PLOT_TIME = 20.0  # s
+SPEED_STEP, RATE_STEP = 0.05, 0.1  # m/s and rad/s, of one key press
+
+
+class Panel:
+    """What the user sees and does. Handlers run in threads of the server: they only hand changes
+    to `live`."""
+
+    def __init__(self, server: viser.ViserServer, live: Live) -> None:
+        self.server, self.gui, self.live = server, server.gui, live
+        self.status = self.gui.add_markdown("")
+        self.add_plot()
+        self.add_motion()
+        self.add_world()
+        self.add_disturbances()
+        self.add_run()
+        with self.gui.add_folder("Keys", expand_by_default=False):
+            self.gui.add_markdown(KEYS)
+        self.add_keys()
+
+    def add_plot(self) -> None:
+        self.times: deque[float] = deque()
+        self.radii: deque[float] = deque()
+        self.plot = self.gui.add_uplot(
+            self.curve(),
+            series=(
+                uplot.Series(label="s"),
+                uplot.Series(label="mm", stroke=style.colour(0), width=2),
+            ),
+            scales={"x": uplot.Scale(time=False)},
+            title="Radius about the mean of the last turn, mm",
+            aspect=2.2,
+        )
+
+    def add_motion(self) -> None:
+        motion = self.live.motion
+        with self.gui.add_folder("Motion"):
+            self.rate = self.slider("rate, rad/s", 3.0, 0.05, motion.rate, "rate")
+            self.radius = self.slider("radius, m", 1.0, 0.01, motion.radius, "radius")
+            self.forwards = self.slider("forwards, m/s", 0.5, 0.01, motion.forwards, "forwards")
+            self.left = self.slider("to the left, m/s", 0.5, 0.01, motion.left, "left")
+
+    def slider(self, label: str, limit: float, step: float, value: float, part: str):
+        limit = max(limit, abs(value))
+        slider = self.gui.add_slider(label, -limit, limit, step, value)
+        slider.on_update(lambda _: self.live.change(lambda: self.live.move(**{part: slider.value})))
+        return slider
+
+    def add_world(self) -> None:
+        config = self.live.simulation.config
+        with self.gui.add_folder("World and controller"):
+            self.terrain = self.choice("terrain", TERRAINS, config["plant"]["terrain"])
+            self.friction = self.gui.add_slider(
+                "friction", 0.05, max(1.5, self.live.friction), 0.05, self.live.friction
+            )
+            self.friction.on_update(
+                lambda _: self.live.change(lambda: self.live.set_friction(self.friction.value))
+            )
+            self.controller = self.choice(
+                "controller", _core.known_controllers(), config["controller"]
+            )
+
+    def choice(self, option: str, values: tuple[str, ...] | list[str], value: str):
+        """A menu whose entries begin a new simulation."""
+        menu = self.gui.add_dropdown(
+            option, list(dict.fromkeys((value, *values))), initial_value=value
+        )
+        menu.on_update(lambda _: self.live.change(lambda: self.rebuild(option, menu.value)))
+        return menu
+
+    def rebuild(self, option: str, value: str) -> None:
+        try:
+            self.live.rebuild(option, value)
+        except Error as error:
+            for client in self.server.get_clients().values():
+                client.add_notification("Not possible", str(error), color="red")
+
+    def add_disturbances(self) -> None:
+        with self.gui.add_folder("Push"):
+            self.strength = self.gui.add_slider("push, m/s", 0.1, 1.0, 0.05, 0.3)
+            self.pushes = self.gui.add_button_group("direction", tuple(PUSHES))
+            self.pushes.on_click(lambda _: self.push(self.pushes.value))
+
+    def push(self, direction: str) -> None:
+        forwards, left = (self.strength.value * part for part in PUSHES[direction])
+        self.live.change(lambda: self.live.push(forwards, left))
+
+    def add_run(self) -> None:
+        self.paused = self.gui.add_checkbox("pause", False)
+        self.paused.on_update(
+            lambda _: self.live.change(lambda: self.live.pause(self.paused.value))
+        )
+        self.follow = self.gui.add_checkbox("follow the robot", True)
+        self.reset = self.gui.add_button("Reset")
+        self.reset.on_click(lambda _: self.live.change(self.live.reset))
+
+    def add_keys(self) -> None:
+        def shift(slider: Any, step: float) -> Callable[[], None]:
+            def act() -> None:
+                slider.value = float(np.clip(slider.value + step, slider.min, slider.max))
+
+            return act
+
+        def stop() -> None:
+            for slider in (self.rate, self.radius, self.forwards, self.left):
+                slider.value = 0.0
+
+        def pause() -> None:
+            self.paused.value = not self.paused.value
+
+        actions = {
+            "I": ("Faster forwards", shift(self.forwards, SPEED_STEP)),
+            "K": ("Faster backwards", shift(self.forwards, -SPEED_STEP)),
+            "U": ("Faster to the left", shift(self.left, SPEED_STEP)),
+            "O": ("Faster to the right", shift(self.left, -SPEED_STEP)),
+            "J": ("Turn more to the left", shift(self.rate, RATE_STEP)),
+            "L": ("Turn more to the right", shift(self.rate, -RATE_STEP)),
+            "B": ("Stop", stop),
+            "N": ("Push", lambda: self.push("left")),
+            "P": ("Pause", pause),
+            "R": ("Reset", lambda: self.live.change(self.live.reset)),
+        }
+        for key, (label, act) in actions.items():
+            command = self.gui.add_command(label, hotkey=key)
+            command.on_trigger(lambda _, act=act: act())
+
+    def curve(self) -> tuple[np.ndarray, np.ndarray]:
+        """Time (s) and radius (mm); uPlot wants a point."""
+        return np.array(self.times or [0.0]), 1e3 * np.array(self.radii or [0.0])
+
+    def update(self, state: dict[str, Any]) -> None:
+        """Status and plot of this moment."""
+        radius = self.live.radius_meter.update(state)
+        if self.times and state["time"] <= self.times[-1]:
+            if not self.live.running:
+                return
+            self.times.clear(), self.radii.clear()  # after a reset
+        self.times.append(state["time"])
+        self.radii.append(radius)
+        while self.times[-1] - self.times[0] > PLOT_TIME:
+            self.times.popleft(), self.radii.popleft()
+        self.plot.data = self.curve()
+        status = self.live.simulation.status.name.lower().replace("_", " ")
+        if self.live.simulation.stood_down:
+            status = f"**{status}: press Reset**"
+        self.status.content = (
+            f"{status}, {state['time']:.1f} s, {self.live.speed:.2f} x real time, "
+            f"radius {1e3 * radius:.1f} mm"
+        )

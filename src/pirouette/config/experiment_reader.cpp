@@ -1,0 +1,330 @@
+#include "pirouette/config/experiment_reader.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "pirouette/config/suggest.hpp"
+#include "pirouette/config/toml.hpp"
+
+namespace pirouette {
+namespace {
+
+constexpr const char* kText = "a text in quotes";
+
+int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
+
+/// What a list is: the value of one parameter, or values of which any will do.
+enum class Lists { kValues, kAlternatives };
+
+class Reader {
+ public:
+  Reader(Experiment& experiment, ExperimentSettings& settings, Errors& errors)
+      : experiment_(experiment), settings_(settings), errors_(errors) {}
+
+  void read(const toml::table& table) {
+    allow_keys(table, "",
+               {"title", "source", "note", "robot", "seeds", "ladder", "common", "rows", "axes",
+                "trace", "columns", "paper", "bounds"});
+    experiment_.title = text(table, "", "title").value_or(experiment_.name);
+    experiment_.source = text(table, "", "source").value_or("");
+    experiment_.note = text(table, "", "note").value_or("");
+    settings_.robot = text(table, "", "robot").value_or("");
+    if (const toml::node* robot = table.get("robot")) settings_.robot_line = line_of(*robot);
+    settings_.common = settings(table, "", "common");
+    settings_.trace = settings(table, "", "trace", Lists::kAlternatives);
+    read_seeds(table);
+    for_each(table, "rows", [&](const toml::table& row) { read_row(row); });
+    for_each(table, "axes", [&](const toml::table& axis) { read_axis(axis); });
+    for_each(table, "columns", [&](const toml::table& column) { read_column(column); });
+    for_each(table, "paper", [&](const toml::table& printed) { read_printed(printed); });
+    for_each(table, "bounds", [&](const toml::table& bound) { read_bound(bound); });
+    if (experiment_.rows.empty()) report(table, "rows", "none given; an experiment needs [[rows]]");
+    read_ladder(table);
+  }
+
+ private:
+  void report(const toml::node& node, const std::string& key, std::string message) {
+    errors_.push_back({experiment_.file.string(), line_of(node), key, std::move(message)});
+  }
+
+  void allow_keys(const toml::table& table, const std::string& prefix,
+                  const std::vector<std::string>& names) {
+    for (const auto& [key, node] : table) {
+      const std::string name(key.str());
+      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
+      const std::optional<std::string> meant = nearest(name, names);
+      report(node, prefix + name,
+             "unknown key; " +
+                 (meant ? "did you mean " + *meant + "?" : "allowed here: " + joined(names)));
+    }
+  }
+
+  std::optional<std::string> text(const toml::table& table, const std::string& prefix,
+                                  const char* name) {
+    const toml::node* node = table.get(name);
+    if (node == nullptr) return std::nullopt;
+    if (node->is_string()) return node->as_string()->get();
+    report(*node, prefix + name, "given " + shown(*node) + "; allowed: " + kText);
+    return std::nullopt;
+  }
+
+  std::string needed_text(const toml::table& table, const std::string& prefix, const char* name) {
+    if (table.get(name) == nullptr) report(table, prefix + name, std::string("missing: ") + kText);
+    return text(table, prefix, name).value_or("");
+  }
+
+  std::optional<double> number(const toml::node& node, const std::string& key) {
+    const std::optional<double> value = node.value<double>();
+    if (!node.is_boolean() && value && std::isfinite(*value)) return value;
+    report(node, key, "given " + shown(node) + "; allowed: a finite number");
+    return std::nullopt;
+  }
+
+  /// Calls `visit` for each table of the array of tables `name`.
+  template <class Visit>
+  void for_each(const toml::table& table, const char* name, Visit&& visit) {
+    const toml::node* node = table.get(name);
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) {
+      report(*node, name, std::string("allowed: tables, each headed [[") + name + "]]");
+      return;
+    }
+    for (const toml::node& element : *list) {
+      if (const toml::table* entry = element.as_table()) {
+        visit(*entry);
+      } else {
+        report(element, name, "given " + shown(element) + "; allowed: a table");
+      }
+    }
+  }
+
+  /// The parameters below the table `name` with dotted keys, in the order of the file.
+  std::vector<ExperimentSetting> settings(const toml::table& table, const std::string& prefix,
+                                          const char* name, Lists lists = Lists::kValues) {
+    std::vector<ExperimentSetting> out;
+    const toml::node* node = table.get(name);
+    if (node == nullptr) return out;
+    if (const toml::table* values = node->as_table()) {
+      flatten(*values, "", lists, out);
+    } else {
+      report(*node, prefix + name, "given " + shown(*node) + "; allowed: a table of parameters");
+    }
+    std::stable_sort(
+        out.begin(), out.end(),
+        [](const ExperimentSetting& a, const ExperimentSetting& b) { return a.line < b.line; });
+    return out;
+  }
+
+  static void flatten(const toml::table& table, const std::string& prefix, Lists lists,
+                      std::vector<ExperimentSetting>& out) {
+    for (const auto& [key, node] : table) {
+      const std::string path = prefix + std::string(key.str());
+      const toml::array* list = node.as_array();
+      if (const toml::table* below = node.as_table()) {
+        flatten(*below, path + ".", lists, out);
+      } else if (list != nullptr && lists == Lists::kAlternatives) {
+        for (const toml::node& value : *list) out.push_back({path, shown(value), line_of(value)});
+      } else {
+        out.push_back({path, shown(node), line_of(node)});
+      }
+    }
+  }
+
+  void read_seeds(const toml::table& table) {
+    experiment_.seeds = {1};
+    const toml::node* node = table.get("seeds");
+    if (node == nullptr) return;
+    std::vector<std::int64_t> seeds;
+    const toml::array* list = node->as_array();
+    for (std::size_t i = 0; list != nullptr && i < list->size(); ++i) {
+      const auto* seed = (*list)[i].as_integer();
+      if (seed != nullptr && seed->get() >= 0) seeds.push_back(seed->get());
+    }
+    const bool distinct = std::set<std::int64_t>(seeds.begin(), seeds.end()).size() == seeds.size();
+    if (list == nullptr || seeds.empty() || seeds.size() != list->size() || !distinct) {
+      report(*node, "seeds",
+             "given " + shown(*node) + "; allowed: a list of different whole numbers from 0 on");
+      return;
+    }
+    experiment_.seeds = seeds;
+  }
+
+  void read_row(const toml::table& table) {
+    allow_keys(table, "rows.", {"label", "controller", "paper", "set", "max"});
+    ExperimentRow row;
+    row.label = needed_text(table, "rows.", "label");
+    row.controller = needed_text(table, "rows.", "controller");
+    row.paper = text(table, "rows.", "paper").value_or("");
+    const bool taken = std::any_of(experiment_.rows.begin(), experiment_.rows.end(),
+                                   [&](const ExperimentRow& r) { return r.label == row.label; });
+    if (taken) report(table, "rows.label", in_quotes(row.label) + " stands there twice");
+    read_row_bounds(table, row.label);
+    experiment_.rows.push_back(std::move(row));
+    settings_.rows.push_back(settings(table, "rows.", "set"));
+    settings_.row_lines.push_back(line_of(table));
+  }
+
+  /// `max` of a row is short for [[bounds]] with that row.
+  void read_row_bounds(const toml::table& table, const std::string& label) {
+    const toml::node* node = table.get("max");
+    if (node == nullptr) return;
+    if (!node->is_table()) {
+      report(*node, "rows.max", "given " + shown(*node) + "; allowed: a table of metrics");
+      return;
+    }
+    std::map<std::string, double> limits;
+    read_numbers(*node->as_table(), "", limits);
+    for (const auto& [metric, limit] : limits) {
+      ExperimentBound bound;
+      bound.row = label;
+      bound.metric = metric;
+      bound.max = limit;
+      experiment_.bounds.push_back(std::move(bound));
+    }
+  }
+
+  void read_axis(const toml::table& table) {
+    allow_keys(table, "axes.", {"key", "values"});
+    ExperimentAxis axis;
+    axis.key = needed_text(table, "axes.", "key");
+    if (axis.key == "run.seed") report(table, "axes.key", "seeds are given by the list `seeds`");
+    const toml::node* node = table.get("values");
+    const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+    if (list == nullptr || list->empty()) {
+      report(node != nullptr ? *node : table, "axes.values", "allowed: a list of values");
+      return;
+    }
+    std::vector<ExperimentSetting> settings;
+    for (const toml::node& value : *list) {
+      settings.push_back({axis.key, shown(value), line_of(value)});
+      axis.values.push_back(without_quotes(settings.back().value));
+    }
+    experiment_.axes.push_back(std::move(axis));
+    settings_.axes.push_back(std::move(settings));
+  }
+
+  void read_column(const toml::table& table) {
+    allow_keys(table, "columns.", {"metric", "title"});
+    experiment_.columns.push_back(
+        {needed_text(table, "columns.", "metric"), needed_text(table, "columns.", "title")});
+  }
+
+  void read_printed(const toml::table& table) {
+    allow_keys(table, "paper.", {"row", "profile", "metrics", "axis", "among"});
+    PrintedResult printed;
+    printed.row = needed_text(table, "paper.", "row");
+    printed.profile = needed_text(table, "paper.", "profile");
+    const bool known = std::any_of(experiment_.rows.begin(), experiment_.rows.end(),
+                                   [&](const ExperimentRow& r) { return r.paper == printed.row; });
+    if (!known) report(table, "paper.row", "no row has paper = " + in_quotes(printed.row));
+    read_among(table, printed.among);
+    const toml::node* metrics = table.get("metrics");
+    if (metrics == nullptr || !metrics->is_table()) {
+      report(table, "paper.metrics", "missing: a table of printed values");
+      return;
+    }
+    read_numbers(*metrics->as_table(), "", printed.metrics);
+    experiment_.printed.push_back(std::move(printed));
+  }
+
+  /// Of an axis, the values of which one holds.
+  void read_among(const toml::table& table, ExperimentAxis& among) {
+    const toml::node* node = table.get("among");
+    if (node == nullptr && table.get("axis") == nullptr) return;
+    among.key = needed_text(table, "paper.", "axis");
+    const auto axis = std::find_if(experiment_.axes.begin(), experiment_.axes.end(),
+                                   [&](const ExperimentAxis& a) { return a.key == among.key; });
+    if (axis == experiment_.axes.end()) {
+      report(table, "paper.axis", "given " + in_quotes(among.key) + "; allowed: key of an axis");
+      return;
+    }
+    const toml::array* list = node != nullptr ? node->as_array() : nullptr;
+    if (list == nullptr || list->empty()) {
+      report(node != nullptr ? *node : table, "paper.among", "allowed: a list of its values");
+      return;
+    }
+    for (const toml::node& value : *list) {
+      among.values.push_back(without_quotes(shown(value)));
+      if (std::find(axis->values.begin(), axis->values.end(), among.values.back()) !=
+          axis->values.end()) {
+        continue;
+      }
+      report(value, "paper.among", "given " + shown(value) + "; allowed: " + joined(axis->values));
+    }
+  }
+
+  void read_numbers(const toml::table& table, const std::string& prefix,
+                    std::map<std::string, double>& out) {
+    for (const auto& [key, node] : table) {
+      const std::string path = prefix + std::string(key.str());
+      if (const toml::table* below = node.as_table()) {
+        read_numbers(*below, path + ".", out);
+      } else if (const std::optional<double> value = number(node, path)) {
+        out[path] = *value;
+      }
+    }
+  }
+
+  void read_bound(const toml::table& table) {
+    allow_keys(table, "bounds.", {"row", "metric", "min", "max", "share", "of"});
+    ExperimentBound bound;
+    bound.row = text(table, "bounds.", "row").value_or("");
+    bound.metric = needed_text(table, "bounds.", "metric");
+    if (!bound.row.empty()) check_label(table, "bounds.row", bound.row);
+    if (const toml::node* min = table.get("min")) bound.min = number(*min, "bounds.min");
+    if (const toml::node* max = table.get("max")) bound.max = number(*max, "bounds.max");
+    bound.relative_to = text(table, "bounds.", "of").value_or("");
+    if (!bound.relative_to.empty()) check_label(table, "bounds.of", bound.relative_to);
+    if (const toml::node* share = table.get("share")) {
+      bound.share = number(*share, "bounds.share").value_or(0.0);
+    }
+    if ((table.get("share") != nullptr) != (table.get("of") != nullptr)) {
+      report(table, "bounds", "share and of go together");
+    } else if (!table.get("min") && !table.get("max") && !table.get("share")) {
+      report(table, "bounds", "needs min, max, or share and of");
+    }
+    experiment_.bounds.push_back(std::move(bound));
+  }
+
+  void read_ladder(const toml::table& table) {
+    const toml::node* node = table.get("ladder");
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) {
+      report(*node, "ladder", "given " + shown(*node) + "; allowed: a list of labels of rows");
+      return;
+    }
+    for (const toml::node& label : *list) {
+      experiment_.ladder.push_back(without_quotes(shown(label)));
+      check_label(label, "ladder", experiment_.ladder.back());
+    }
+  }
+
+  void check_label(const toml::node& node, const std::string& key, const std::string& label) {
+    std::vector<std::string> labels;
+    for (const ExperimentRow& row : experiment_.rows) labels.push_back(in_quotes(row.label));
+    if (std::find(labels.begin(), labels.end(), in_quotes(label)) != labels.end()) return;
+    report(node, key, "given " + in_quotes(label) + "; allowed: " + joined(labels));
+  }
+
+  Experiment& experiment_;
+  ExperimentSettings& settings_;
+  Errors& errors_;
+};
+
+}  // namespace
+
+std::string without_quotes(const std::string& literal) {
+  const bool quoted = literal.size() > 1 && literal.front() == '"';
+  return quoted ? literal.substr(1, literal.size() - 2) : literal;
+}
+
+void read_experiment(const toml::table& table, Experiment& experiment, ExperimentSettings& settings,
+                     Errors& errors) {
+  Reader(experiment, settings, errors).read(table);
+}
+
+}  // namespace pirouette
