@@ -91,6 +91,12 @@ test-python: build python .venv/test.stamp  ## tests of the Python package, some
 	@$(BIN)/pip install --quiet --requirement requirements-test.txt
 	@touch $@
 
+.PHONY: bench
+bench: setup  ## the controller's stages against one physics step; ARGS='--benchmark_filter=Mpc'
+	@$(CONFIGURE) -DPIROUETTE_BENCH=ON > /dev/null
+	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_bench
+	@$(BUILD)/bench/pirouette_bench $(ARGS)
+
 .PHONY: check
 check: check-format lint  ## formatting and clang-tidy
 

@@ -19,11 +19,12 @@ TEST_P(SpinOnTheFlat, EightTurnsStayOnThePointAtTheCommandedRate) {
   const Metrics m = spin({set("run.rate", rate), "run.seed=" + std::to_string(seed)});
   EXPECT_FALSE(m.fell);
   EXPECT_GE(m.turns_done, 7.9);
-  // The product's promise is 1 % and 15 mm. These bounds are about twice what was measured over all
-  // rates and seeds, so that a regression shows long before the promise breaks.
-  EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 2e-3);
-  EXPECT_LE(m.com.radius_mean_mm.value_or(1e9), 3.0);
-  EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 4.0);
+  const bool nominal_rate = std::abs(rate) == 0.7;
+  // What the calibration at rest leaves of the gyro's bias, 3e-4 rad/s at most, weighs more the
+  // slower the robot turns.
+  EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), nominal_rate ? 1e-3 : 2e-3);
+  EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), nominal_rate ? 1.0 : 2.0);
+  EXPECT_LE(m.com.distance_to_point_max_mm.value_or(1e9), nominal_rate ? 4.0 : 8.0);
 }
 
 std::string spin_name(const testing::TestParamInfo<std::tuple<double, int>>& test_info) {
@@ -43,6 +44,23 @@ TEST(SpinWithTrueState, StaysWithinHalfAMillimetreOfThePoint) {
   EXPECT_FALSE(m.fell);
   EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 0.5);
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-3);
+}
+
+TEST(SpinOnSlipperyGround, StaysWithinFiveMillimetresOfThePoint) {
+  for (const double friction : {0.4, 0.2}) {
+    const Metrics m = spin({set("plant.friction", friction)});
+    EXPECT_FALSE(m.fell) << friction;
+    EXPECT_LE(m.com.distance_to_point_max_mm.value_or(1e9), 5.0) << friction;
+  }
+}
+
+TEST(FastSpin, SurvivesTenTurnsAtFourRadiansPerSecondByAShorterStride) {
+  for (const double rate : {4.0, -4.0}) {
+    const Metrics m = spin({set("run.rate", rate), "run.turns=10"});
+    EXPECT_FALSE(m.fell) << rate;
+    EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-3) << rate;
+    EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 5.0) << rate;
+  }
 }
 
 TEST(SpinFromAnOffsetStart, ReachesPointAndRateFromTenCentimetresAndThirtyDegrees) {
