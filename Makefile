@@ -6,6 +6,7 @@ SHELL := /bin/bash
 PRESET ?= release
 WERROR ?= OFF
 PREFIX ?= /usr/local
+FUZZ_RUNS ?= 250000
 JOBS ?= $(shell nproc)
 ARGS ?=
 RUN ?=
@@ -23,7 +24,7 @@ export PIP_DISABLE_PIP_VERSION_CHECK := 1
 
 .PHONY: help
 help:  ## this list
-	@echo 'usage: make TARGET [PRESET=release|dev|asan-ubsan] [WERROR=ON] [JOBS=N]'
+	@echo 'usage: make TARGET [PRESET=release|dev|asan-ubsan|tsan] [WERROR=ON] [JOBS=N]'
 	@awk -F ':.*## *' '/^[a-z-]+:.*##/ {printf "  %-12s %s\n", $$1, $$2}' Makefile
 
 .PHONY: setup
@@ -90,6 +91,20 @@ test-python: build python .venv/test.stamp  ## tests of the Python package, some
 	@echo 'setup: wheels of requirements-test.txt into .venv'
 	@$(BIN)/pip install --quiet --requirement requirements-test.txt
 	@touch $@
+
+.PHONY: fuzz
+fuzz: setup  ## FUZZ_RUNS random inputs for each reader of users' files, under sanitizers
+	@bash scripts/system_packages.sh clang-19 libclang-rt-19-dev
+	@$(CMAKE) --preset fuzz --log-level=WARNING > /dev/null
+	@$(CMAKE) --build build/fuzz --parallel $(JOBS) --target all_fuzzers
+	@FUZZ_RUNS=$(FUZZ_RUNS) bash scripts/fuzz.sh
+
+.PHONY: soak
+soak: build  ## minutes to hours: a spin of ten minutes, then the acceptance experiments
+	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_soak_tests
+	@$(BUILD)/tests/pirouette_soak_tests
+	@for file in experiments/acceptance/*.toml; do \
+	$(PIROUETTE) sweep $$file --jobs $(JOBS) || exit 1; done
 
 .PHONY: bench
 bench: setup  ## the controller's stages against one physics step; ARGS='--benchmark_filter=Mpc'

@@ -4,7 +4,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 bin=.venv/bin
 
-sources() { find src apps tests bench examples python -type f \( "$@" \) 2>/dev/null | sort || true; }
+sources() { find src apps tests bench fuzz examples python -type f \( "$@" \) 2>/dev/null | sort || true; }
 mapfile -t cpp < <(sources -name '*.cpp' -o -name '*.hpp')
 mapfile -t cmake < <(ls CMakeLists.txt cmake/*.cmake && sources -name CMakeLists.txt -o -name '*.cmake')
 mapfile -t python < <(sources -name '*.py')

@@ -3,13 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "support/mini_cheetah.hpp"
 #include "support/random_robot.hpp"
+#include "support/robot_text.hpp"
 #include "support/vectors.hpp"
 
 namespace pirouette {
@@ -18,7 +17,9 @@ namespace {
 using test::distance;
 using test::leg_column;
 using test::moved;
+using test::text_of_robot;
 using test::velocity_of;
+using test::with_legs_reversed;
 
 constexpr int kDraws = 20;
 constexpr double kExact = 1e-12;  // a few hundred roundings of numbers of order one
@@ -33,12 +34,6 @@ auto rate(const RobotState& state, const Value& value) {
   return ((value(moved(state, kStep)) - value(moved(state, -kStep))) / (2.0 * kStep)).eval();
 }
 
-std::string text_of_robot() {
-  std::ostringstream text;
-  text << std::ifstream(test::kRobot).rdbuf();
-  return text.str();
-}
-
 std::string replaced(std::string text, const std::string& from, const std::string& to) {
   std::size_t at = text.find(from);
   if (at == std::string::npos) throw std::invalid_argument("not in the robot file: " + from);
@@ -48,24 +43,10 @@ std::string replaced(std::string text, const std::string& from, const std::strin
   return text;
 }
 
-/// The robot file with its legs in the order RL RR FL FR.
-std::string with_legs_reversed(const std::string& text) {
-  std::array<std::size_t, kLegCount + 1> begin{};
-  for (const Leg leg : kLegs) {
-    begin[index(leg)] = text.find("<body name=\"" + std::string(name(leg)) + "_abad_rotor\"");
-  }
-  begin[kLegCount] = text.rfind("</body>", text.find("</worldbody>"));
-  std::string out = text.substr(0, begin[0]);
-  for (std::size_t i = kLegCount; i-- > 0;) out += text.substr(begin[i], begin[i + 1] - begin[i]);
-  return out + text.substr(begin[kLegCount]);
-}
-
 /// Writes `xml` to a file that this test has for itself.
 std::string write(const std::string& xml) {
   const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-  const std::string path = testing::TempDir() + "pirouette_" + test->name() + ".xml";
-  std::ofstream(path) << xml;
-  return path;
+  return test::write(testing::TempDir() + "pirouette_" + test->name() + ".xml", xml);
 }
 
 std::string errors_of(const std::string& mjcf) {

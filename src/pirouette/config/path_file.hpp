@@ -10,12 +10,12 @@
 namespace pirouette {
 
 /// Waypoints and how to walk along the spline through them. Keys of the file:
-///   points = [[x, y], ...]   m; the first is where the robot starts, facing along the path
-///   closed = false           the path returns from the last point to the first, which is not
-///   repeated speed = 0.2              m/s heading = "tangent"      the body turns with the path;
-///   "fixed": it keeps its heading; a number:
-///                            it turns with the path, which runs at this angle (deg) from its
-///                            front: 90 leads to its left, 180 backwards
+/// - points = [[x, y], ...]: m; the first is where the robot starts, facing along the path;
+/// - closed = false: the path returns from the last point to the first, which is not repeated;
+/// - speed = 0.2: m/s;
+/// - heading = "tangent": the body turns with the path; "fixed": it keeps its heading; a number:
+///   it turns with the path, which runs at this angle (deg) from its front: 90 leads to its left,
+///   180 backwards.
 struct PathFile {
   std::vector<Vec2> points;  ///< m
   bool closed = false;

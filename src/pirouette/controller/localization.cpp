@@ -21,11 +21,13 @@ void Localization::reset(const BasePose& start) {
 }
 
 void Localization::start(const BasePose& start, TickTrace& trace) {
-  PerLeg<Vec3> p_WF;
-  for (const Leg leg : kLegs) p_WF[leg] = start.p_WB + start.R_WB * trace.feet[leg].p_BF;
-  odometry_filter_.reset(start.p_WB, p_WF);
-  trace.state.p_WB = start.p_WB;
-  trace.state.R_WB = start.R_WB;
+  RobotState& state = trace.state;
+  state.p_WB = start.p_WB;
+  state.R_WB = start.R_WB;
+  for (const Leg leg : kLegs) {
+    state.p_WF[leg] = start.p_WB + start.R_WB * trace.feet[leg].p_BF;
+  }
+  odometry_filter_.reset(start.p_WB, state.p_WF);
 }
 
 /// How much of a foot's word the odometry takes: ramps in after touchdown and out before lift-off.
@@ -85,6 +87,33 @@ CreepInput Localization::creep_input(const TickTrace& trace) const {
   return in;
 }
 
+/// Pose and velocity of the trunk from inertial sensors and leg odometry.
+void Localization::estimate_base(double dt, TickTrace& trace) noexcept {
+  const SensorReading& sensors = trace.sensors;
+  RobotState& state = trace.state;
+  AttitudeInput attitude_in{
+      sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking, {}};
+  for (const Leg leg : kLegs) attitude_in.p_BF[leg] = trace.feet[leg].p_BF;
+  const Attitude attitude = attitude_filter_.update(attitude_in, dt);
+  if (trace.gait.walking && trace.ground.known && !trace.ground.stepped) {
+    const Vec2 seen(trace.plane.a1, trace.plane.a2);
+    const double heading = state.rpy.yaw;
+    tilt_bias_.update(seen + rot2(heading) * trace.tilt_bias_H, heading, dt);
+  }
+  // Steps met late have been in the average for a while.
+  if (trace.ground.stepped) tilt_bias_.reset();
+  trace.tilt_bias_H = tilt_bias_.slope_H();
+  state.R_WB = attitude.R_WB * exp_so3(-tilt_bias_.rotation_B());
+  state.w_WB_B = attitude.w_WB_B;
+  OdometryInput in;
+  // The accelerometer's bias and the tilt that it causes cancel: no correction here.
+  in.a_WB_W = attitude.R_WB * sensors.specific_force_B - Vec3(0.0, 0.0, kGravity);
+  for (const Leg leg : kLegs) in.foot[leg] = foot_odometry(trace, leg);
+  const OdometryEstimate odometry = odometry_filter_.update(in, dt);
+  state.p_WB = odometry.p_WB;
+  state.v_WB_W = odometry.v_WB_W;
+}
+
 void Localization::estimate(RobotModel& model, double dt, TickTrace& trace) noexcept {
   const SensorReading& sensors = trace.sensors;
   RobotState& state = trace.state;
@@ -105,27 +134,7 @@ void Localization::estimate(RobotModel& model, double dt, TickTrace& trace) noex
     state.v_WB_W = sensors.truth->v_WB_W;
     state.w_WB_B = sensors.truth->w_WB_B;
   } else {
-    AttitudeInput attitude_in{
-        sensors.w_WB_B, sensors.specific_force_B, state.v_WB_W, !trace.gait.walking, {}};
-    for (const Leg leg : kLegs) attitude_in.p_BF[leg] = trace.feet[leg].p_BF;
-    const Attitude attitude = attitude_filter_.update(attitude_in, dt);
-    if (trace.gait.walking && trace.ground.known && !trace.ground.stepped) {
-      const Vec2 seen(trace.plane.a1, trace.plane.a2);
-      const double heading = state.rpy.yaw;
-      tilt_bias_.update(seen + rot2(heading) * trace.tilt_bias_H, heading, dt);
-    }
-    // Steps met late have been in the average for a while.
-    if (trace.ground.stepped) tilt_bias_.reset();
-    trace.tilt_bias_H = tilt_bias_.slope_H();
-    state.R_WB = attitude.R_WB * exp_so3(-tilt_bias_.rotation_B());
-    state.w_WB_B = attitude.w_WB_B;
-    OdometryInput in;
-    // The accelerometer's bias and the tilt that it causes cancel: no correction here.
-    in.a_WB_W = attitude.R_WB * sensors.specific_force_B - Vec3(0.0, 0.0, kGravity);
-    for (const Leg leg : kLegs) in.foot[leg] = foot_odometry(trace, leg);
-    const OdometryEstimate odometry = odometry_filter_.update(in, dt);
-    state.p_WB = odometry.p_WB;
-    state.v_WB_W = odometry.v_WB_W;
+    estimate_base(dt, trace);
   }
   state.rpy = rpy_from_rotation(state.R_WB);
   state.rpy.yaw = yaw_.update(state.rpy.yaw);

@@ -18,7 +18,8 @@ class Localization {
 
   void reset(const BasePose& start);
 
-  /// Starts the odometry at `start` with every foot of `trace.feet` on the ground.
+  /// Starts the odometry at `start` with every foot of `trace.feet` on the ground; sets the pose
+  /// and `p_WF` of trace.state.
   void start(const BasePose& start, TickTrace& trace);
 
   /// trace.sensors -> trace.feet, creep, state; also `model`. Uses the contacts, plane, gait and
@@ -31,6 +32,7 @@ class Localization {
   const RollingFoot& foot() const { return foot_; }
 
  private:
+  void estimate_base(double dt, TickTrace& trace) noexcept;
   bool debounced(const TickTrace& trace, Leg leg) noexcept;
   double trust(const TickTrace& trace, Leg leg) const;
   FootOdometry foot_odometry(const TickTrace& trace, Leg leg) const;

@@ -182,14 +182,16 @@ bool SpinController::Impl::accept(const SensorReading& sensors, const MotionComm
 }
 
 void SpinController::Impl::start_from_first_reading() {
-  std::array<Vec3, kLegCount> contacts;
   for (const Leg leg : kLegs) {
     trace.feet[leg] =
         foot_state(legs[leg], last_good.joint_position[leg], last_good.joint_velocity[leg]);
-    p_WF_liftoff[leg] = start.p_WB + start.R_WB * trace.feet[leg].p_BF;
-    contacts[index(leg)] = localization.foot().contact_point(p_WF_liftoff[leg], Vec3::UnitZ());
   }
   localization.start(start, trace);
+  p_WF_liftoff = trace.state.p_WF;
+  std::array<Vec3, kLegCount> contacts;
+  for (const Leg leg : kLegs) {
+    contacts[index(leg)] = localization.foot().contact_point(p_WF_liftoff[leg], Vec3::UnitZ());
+  }
   trace.plane = ground.start(contacts);
   guard.reset(last_good.joint_position);
   started = true;

@@ -17,6 +17,8 @@ constexpr int kMinFootholdsPerTread = 3;  // fewer are feet on edges
 constexpr double kMaxResidual = 0.004;    // m, rms about the treads; more is no flight of stairs
 constexpr double kReach = 0.05;  // m, beyond the outermost footholds that a tread is taken to go on
 
+Vec2 unit_vector(double direction) { return Vec2(std::cos(direction), std::sin(direction)); }
+
 }  // namespace
 
 void FootholdMemory::reset() noexcept {
@@ -41,7 +43,6 @@ void FootholdMemory::add(const Vec3& p_WC, const Vec2& p_WG) noexcept {
   }
   climb_ = best;
   sort_along(best);
-  uphill_ = Vec2(std::cos(best), std::sin(best));
   find_treads();
 }
 
@@ -68,7 +69,7 @@ bool FootholdMemory::find_climb() noexcept {
 }
 
 double FootholdMemory::sort_along(double direction) noexcept {
-  const Vec2 uphill(std::cos(direction), std::sin(direction));
+  const Vec2 uphill = unit_vector(direction);
   const std::size_t n = count();
   for (std::size_t i = 0; i < n; ++i) {
     sorted_[i] = {uphill.dot(footholds_[i].head<2>()), footholds_[i].z()};
@@ -130,7 +131,8 @@ double FootholdMemory::upper_edge(std::size_t tread) const noexcept {
 
 std::optional<RememberedGround> FootholdMemory::at(const Vec2& p_W) const noexcept {
   if (!valid_) return std::nullopt;
-  const double along = uphill_.dot(p_W);
+  const Vec2 uphill = unit_vector(*climb_);
+  const double along = uphill.dot(p_W);
   if (along < treads_[0].from - kReach || along > treads_[tread_count_ - 1].to + kReach) {
     return std::nullopt;
   }
@@ -140,7 +142,7 @@ std::optional<RememberedGround> FootholdMemory::at(const Vec2& p_W) const noexce
   const double highest = upper_edge(tread) - config_.edge_margin;
   const double moved =
       lowest > highest ? 0.5 * (lowest + highest) : std::clamp(along, lowest, highest);
-  return RememberedGround{p_W + (moved - along) * uphill_, treads_[tread].height};
+  return RememberedGround{p_W + (moved - along) * uphill, treads_[tread].height};
 }
 
 }  // namespace pirouette

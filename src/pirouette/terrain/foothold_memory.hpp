@@ -71,7 +71,6 @@ class FootholdMemory {
   std::size_t added_ = 0;
   std::optional<TerrainPlane> plane_;
   std::optional<double> climb_;  ///< rad, direction uphill in the world; absent: none known
-  Vec2 uphill_ = Vec2::UnitX();
   std::array<Sample, kCapacity> sorted_;
   std::array<Tread, kCapacity> treads_;
   std::size_t tread_count_ = 0;

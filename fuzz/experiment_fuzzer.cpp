@@ -1,0 +1,22 @@
+// Experiment files of `pirouette sweep` and `reproduce`.
+#include "input_file.hpp"
+#include "pirouette/config/experiment_file.hpp"
+
+using pirouette::Experiment;
+using pirouette::Result;
+using pirouette::fuzz::InputFile;
+using pirouette::fuzz::require;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const InputFile file(".toml");
+  const Result<Experiment> experiment = pirouette::load_experiment(file.write(data, size));
+  if (experiment) {
+    require(!experiment.value().trials.empty(), "an experiment has trials");
+    for (const auto& trial : experiment.value().trials) {
+      require(trial.row < experiment.value().rows.size(), "every trial belongs to a row");
+    }
+  } else {
+    require(!experiment.errors().empty(), "a refusal has a reason");
+  }
+  return 0;
+}

@@ -1,0 +1,35 @@
+// --path FILE.toml: what loads is a curve that can be followed, finite everywhere.
+#include <cmath>
+
+#include "input_file.hpp"
+#include "pirouette/config/path_file.hpp"
+#include "pirouette/path/path.hpp"
+
+using pirouette::Path;
+using pirouette::PathFile;
+using pirouette::PathSample;
+using pirouette::Result;
+using pirouette::fuzz::InputFile;
+using pirouette::fuzz::require;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const InputFile file(".toml");
+  const Result<PathFile> loaded = pirouette::load_path_file(file.write(data, size));
+  if (!loaded) {
+    require(!loaded.errors().empty(), "a refusal has a reason");
+    return 0;
+  }
+  const PathFile& in = loaded.value();
+  const std::optional<Path> path = Path::spline(in.points, in.closed);
+  require(path.has_value(), "checked points make a path");
+  constexpr int kSamples = 16;
+  for (int i = 0; i <= kSamples; ++i) {
+    const double s = path->length() * i / kSamples;
+    const PathSample sample = path->at(s);
+    require(
+        sample.p.allFinite() && std::isfinite(sample.heading) && std::isfinite(sample.curvature),
+        "a path is finite everywhere");
+    require(std::isfinite(path->nearest(sample.p)), "every point has a nearest one");
+  }
+  return 0;
+}
