@@ -13,6 +13,7 @@
 #include <string>
 
 #include "pirouette/base/math.hpp"
+#include "pirouette/config/fault_config.hpp"
 #include "pirouette/config/fields.hpp"
 
 namespace pirouette {
@@ -575,7 +576,12 @@ struct PlantConfig {
   double joint_friction_scale = 1.0;
   double joint_damping_scale = 1.0;
   double contact_time_constant = 0.005;
+  double trunk_mass_scale = 1.0;
+  std::array<double, 3> trunk_com_offset = {0.0, 0.0, 0.0};
+  double payload = 0.0;
+  std::array<double, 3> payload_position = {0.0, 0.0, 0.05};
   SensorConfig sensors;
+  FaultConfig faults;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -603,7 +609,17 @@ struct PlantConfig {
       "Damping of the joints, as a multiple of the robot file's.");
     v(s.contact_time_constant, "contact_time_constant", "s", Range{0.002, 0.5},
       "Time constant of the feet's contact; the sink depth under a load grows with its square.");
+    v(s.trunk_mass_scale, "trunk_mass_scale", "1", Range{0.1, 10.0},
+      "Mass and inertia of the trunk, as a multiple of what the controller takes from the robot "
+      "file.");
+    v(s.trunk_com_offset, "trunk_com_offset", "m, m, m", Range{-0.2, 0.2},
+      "The trunk's CoM from where the robot file has it, trunk axes.");
+    v(s.payload, "payload", "kg", Range{0.0, 100.0},
+      "Mass on the trunk that the controller knows nothing of, a ball of 5 cm radius.");
+    v(s.payload_position, "payload_position", "m, m, m", Range{-1.0, 1.0},
+      "Its centre, trunk frame.");
     v(s.sensors, "sensors", "Sensor noise; per control sample.");
+    v(s.faults, "faults", "What goes wrong, and when.");
   }
 };
 

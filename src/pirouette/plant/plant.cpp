@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "pirouette/base/rotation.hpp"
+#include "pirouette/plant/faults.hpp"
 #include "pirouette/plant/random.hpp"
 #include "pirouette/plant/scene.hpp"
 #include "pirouette/plant/sensors.hpp"
@@ -130,6 +132,8 @@ struct Plant::Impl {
         map(scene.map),
         data(mj_makeData(model.get())),
         sensors(config.plant.sensors, static_cast<std::uint64_t>(config.run.seed)),
+        faults(config.plant.faults, static_cast<std::uint64_t>(config.run.seed),
+               1.0 / config.control.rate),
         command_delay(delay),
         steps_per_tick(steps),
         friction(config.plant.friction),
@@ -139,6 +143,7 @@ struct Plant::Impl {
   /// Motor torques of `command` at the present joint state, into `truth` and the simulation.
   void drive_motors(const JointCommand& command);
   void step(const JointCommand& command);
+  void push(const Vec3& delta_v_W);
   /// The first half of a physics step: positions, velocities and contacts of the present state.
   void begin_step();
   /// Refreshes `truth`: forces and accelerations of this very moment, under the command in force.
@@ -151,12 +156,15 @@ struct Plant::Impl {
   RobotMap map;
   DataPtr data;
   Sensors sensors;
+  Faults faults;
   CommandDelay command_delay;
   std::size_t steps_per_tick;
   double friction;            ///< sliding, where the terrain has none of its own
   PerLeg<Vec3> torque_scale;  ///< true over nominal torque constant: abad, hip, knee
   bool shows_truth;           ///< the controller was configured to use it
 
+  MotorHealth motors;
+  JointCommand sent;  ///< the last one that was not lost
   JointCommand command_in_force;
   PlantTruth truth;
   PerLeg<double> normal_force{};  ///< N, on each foot
@@ -174,11 +182,13 @@ void Plant::Impl::drive_motors(const JointCommand& command) {
       q[i] = data->qpos[at_leg.qpos[static_cast<std::size_t>(i)]];
       dq[i] = data->qvel[at_leg.dof[static_cast<std::size_t>(i)]];
     }
-    const Vec3 demand = torque_scale[leg].cwiseProduct(
-        wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) + wanted.kd.cwiseProduct(wanted.dq - dq));
+    const Vec3 scale = torque_scale[leg].cwiseProduct(motors.torque[leg]);
+    const Vec3 demand = scale.cwiseProduct(wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) +
+                                           wanted.kd.cwiseProduct(wanted.dq - dq));
     diverged = diverged || !demand.allFinite();
     if (diverged) return;
-    const Vec3 torque = demand.cwiseMax(-at_leg.tau_max).cwiseMin(at_leg.tau_max);
+    const Vec3 limit = motors.torque_limit * at_leg.tau_max;
+    const Vec3 torque = demand.cwiseMax(-limit).cwiseMin(limit);
     truth.joint_torque[leg] = torque;
     for (int i = 0; i < 3; ++i)
       data->qfrc_applied[at_leg.dof[static_cast<std::size_t>(i)]] = torque[i];
@@ -203,6 +213,12 @@ void Plant::Impl::step(const JointCommand& command) {
   begin_step();
   step_times.add(
       std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+}
+
+void Plant::Impl::push(const Vec3& delta_v_W) {
+  Eigen::Map<Vec3>(data->qvel + map.trunk_dof) += delta_v_W;
+  diverged = !is_sound(*model, *data);
+  if (!diverged) begin_step();
 }
 
 void Plant::Impl::observe_foot(Leg leg) {
@@ -308,6 +324,7 @@ Plant::~Plant() = default;
 
 SensorReading Plant::sense() {
   SensorReading reading = impl_->sensors.sample(impl_->truth, impl_->normal_force);
+  impl_->faults.spoil(reading);
   if (impl_->shows_truth) reading.truth = impl_->truth.base;
   return reading;
 }
@@ -315,16 +332,21 @@ SensorReading Plant::sense() {
 const PlantTruth& Plant::truth() const { return impl_->truth; }
 
 void Plant::advance(const JointCommand& command) {
-  for (std::size_t i = 0; i < impl_->steps_per_tick && !impl_->diverged; ++i) impl_->step(command);
-  impl_->observe();
-  impl_->truth.time = static_cast<double>(++impl_->ticks) * impl_->period();
+  Impl& s = *impl_;
+  const double now = s.truth.time;
+  s.motors = s.faults.motors(now);
+  if (!s.faults.loses_command(now)) s.sent = command;
+  const std::optional<Vec3> delta_v_W =
+      s.faults.push(now, rpy_from_rotation(s.truth.base.R_WB).yaw);
+  if (delta_v_W && !s.diverged) s.push(*delta_v_W);
+  for (std::size_t i = 0; i < s.steps_per_tick && !s.diverged; ++i) s.step(s.sent);
+  s.observe();
+  s.truth.time = static_cast<double>(++s.ticks) * s.period();
 }
 
 void Plant::push(const Vec3& delta_v_W) {
   if (impl_->diverged) return;
-  Eigen::Map<Vec3>(impl_->data->qvel + impl_->map.trunk_dof) += delta_v_W;
-  impl_->diverged = !is_sound(*impl_->model, *impl_->data);
-  if (!impl_->diverged) impl_->begin_step();
+  impl_->push(delta_v_W);
   impl_->observe();
 }
 

@@ -26,15 +26,17 @@ class Plant {
   Plant& operator=(Plant&&) noexcept;
   ~Plant();
 
-  /// The sensors at this moment; draws noise, so call once a control tick.
+  /// The sensors at this moment, as plant.faults spoils them; draws noise, so call once a control
+  /// tick.
   SensorReading sense();
   const PlantTruth& truth() const;
 
   /// Holds `command` for one control period (1 / control.rate): physics steps with joint PD and
-  /// torque limits in each.
+  /// torque limits in each. What plant.faults has for this moment happens: a push at its beginning,
+  /// weak motors in it, or the command is lost and the last one stays in force.
   void advance(const JointCommand& command);
 
-  /// Adds to the trunk's velocity at once: a push. m/s, world axes.
+  /// Adds to the whole robot's velocity at once: a push. m/s, world axes.
   void push(const Vec3& delta_v_W);
 
   /// Sliding friction of feet and ground from now on, where the terrain has none of its own.

@@ -18,7 +18,9 @@ enum class RandomPurpose : std::uint32_t {
   kSensorNoise = 3,
   kTorqueConstants = 4,
   kContactErrors = 5,
-  kPositionAid = 6
+  kPositionAid = 6,
+  kImuSpikes = 7,
+  kLostCommands = 8
 };
 
 class RandomStream {

@@ -15,6 +15,38 @@ void remove_world_geoms(mjSpec& spec) {
     mjs_delete(&spec, geom);
 }
 
+bool floats(mjsBody* body) {
+  mjsElement* joint = mjs_firstChild(body, mjOBJ_JOINT, /*recurse=*/0);
+  return joint != nullptr && mjs_asJoint(joint)->type == mjJNT_FREE;
+}
+
+/// A ball on the trunk, of even density. Without a trunk the robot's map says what is missing.
+void add_payload(const PlantConfig& config, mjSpec& spec) {
+  constexpr double kRadius = 0.05;  // m
+  for (mjsElement* e = mjs_firstElement(&spec, mjOBJ_BODY); e; e = mjs_nextElement(&spec, e)) {
+    mjsBody* trunk = mjs_asBody(e);
+    if (!floats(trunk)) continue;
+    mjsBody* payload = mjs_addBody(trunk, nullptr);
+    payload->mass = config.payload;
+    Eigen::Map<Vec3>(payload->pos) = Eigen::Map<const Vec3>(config.payload_position.data());
+    Eigen::Map<Vec3>(payload->ipos).setZero();
+    Eigen::Map<Vec3>(payload->inertia).setConstant(0.4 * config.payload * square(kRadius));
+    payload->explicitinertial = 1;
+    payload->fuse = 0;
+    return;
+  }
+}
+
+/// The trunk weighs and balances otherwise than the robot file says.
+void falsify_trunk(const PlantConfig& config, int trunk, mjModel& model) {
+  model.body_mass[trunk] *= config.trunk_mass_scale;
+  Eigen::Map<Vec3>(model.body_inertia + 3 * trunk) *= config.trunk_mass_scale;
+  Eigen::Map<Vec3>(model.body_ipos + 3 * trunk) +=
+      Eigen::Map<const Vec3>(config.trunk_com_offset.data());
+  const DataPtr data(mj_makeData(&model));
+  mj_setConst(&model, data.get());
+}
+
 mjOption physics_options(const PlantConfig& config) {
   mjOption option;
   mj_defaultOption(&option);
@@ -41,6 +73,7 @@ Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
   remove_world_geoms(*spec);
   terrain.add_to(*spec, friction);
   spec->option = physics_options(config);
+  if (config.payload > 0.0) add_payload(config, *spec);
 
   Scene scene;
   scene.model.reset(mj_compile(spec.get(), nullptr));
@@ -50,6 +83,8 @@ Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
   Result<RobotMap> map = map_robot(model, mjcf);
   if (!map) return map.errors();
   scene.map = map.value();
+  if (config.trunk_mass_scale != 1.0 || config.trunk_com_offset != PlantConfig{}.trunk_com_offset)
+    falsify_trunk(config, scene.map.trunk_body, model);
 
   const int foot_priority =
       1 + *std::max_element(model.geom_priority, model.geom_priority + model.ngeom);

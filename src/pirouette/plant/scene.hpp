@@ -31,7 +31,8 @@ struct Scene {
 /// to the world (a floor of its own), its physics options and its actuators do not count. The feet
 /// take the configured friction and softness with a priority above every other geom's, so that
 /// MuJoCo uses exactly these values wherever a foot touches. Friction and damping of the joints are
-/// the file's, times the configured factors.
+/// the file's, times the configured factors; the trunk's mass and CoM are off by what is
+/// configured, and a payload is on it.
 Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
                           const std::string& mjcf);
 
