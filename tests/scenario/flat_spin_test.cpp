@@ -83,6 +83,15 @@ TEST(SpinWithTheFootAsAPoint, TheBaselineBundleSpinsToo) {
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2);
 }
 
+TEST(SpinOfAnotherRobot, NeedsNothingButTheHeightOfItsCentreOfMass) {
+  for (const double rate : {0.7, -2.0}) {
+    const Metrics m = spin({"robot=\"go1\"", set("run.rate", rate), "run.turns=3"});
+    EXPECT_FALSE(m.fell) << rate;
+    EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 2e-3) << rate;
+    EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 2.0) << rate;
+  }
+}
+
 TEST(SpinWithoutContactSensing, TheScheduleStandsInForTheFlags) {
   const Metrics m = spin({"plant.sensors.contact_flags=false", "run.turns=4"});
   EXPECT_FALSE(m.fell);
