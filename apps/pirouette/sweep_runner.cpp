@@ -2,6 +2,7 @@
 
 #include <unistd.h>
 
+#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -9,13 +10,15 @@
 
 #include "exit_code.hpp"
 #include "interrupt.hpp"
+#include "pirouette/config/suggest.hpp"
 #include "pirouette/experiment/report.hpp"
-#include "pirouette/experiment/sweep.hpp"
+#include "pirouette/experiment/trial_table.hpp"
 
 namespace pirouette::app {
 namespace {
 
 constexpr int kMaxJobs = 1024;
+constexpr unsigned kMaxShards = 100000;
 constexpr int kMinute = 60;  // s
 
 /// "fig6: 12 of 140 trials, 3 min 20 s left" on stderr: redrawn on a terminal, else a line every
@@ -55,18 +58,6 @@ class SweepProgressLine {
   std::size_t next_ = 0;
 };
 
-std::optional<Error> write_tables(const Report& report, const std::filesystem::path& folder,
-                                  const std::string& name) {
-  const std::pair<const char*, std::string> files[] = {{".md", report.markdown()},
-                                                       {".json", report.json()},
-                                                       {".csv", report.csv()},
-                                                       {"-trials.csv", report.trials_csv()}};
-  for (const auto& [suffix, text] : files) {
-    if (auto error = write_atomically(folder / (name + suffix), text)) return error;
-  }
-  return std::nullopt;
-}
-
 }  // namespace
 
 void SweepRunner::add_options(CLI::App& command, const std::string& default_folder) {
@@ -81,36 +72,100 @@ void SweepRunner::add_options(CLI::App& command, const std::string& default_fold
                   "Folder of results, tables and traces; what is finished there is kept [" +
                       default_folder + "]")
       ->type_name("DIR");
-  command.add_flag("--fresh", fresh_, "Run everything again, as after a change of the code");
+  CLI::Option* fresh =
+      command.add_flag("--fresh", fresh_, "Run everything again, as after a change of the code");
+  command.add_flag("--resume", resume_, "Run only what is not finished there; the default")
+      ->excludes(fresh);
+}
+
+void SweepRunner::add_shard_options(CLI::App& command) {
+  own_folder_ = true;
+  CLI::Option* shard =
+      command
+          .add_option("--shard", shard_,
+                      "Run every N-th trial from the I-th on, beside the other shards; no tables")
+          ->type_name("I/N")
+          ->excludes("--fresh");
+  command
+      .add_flag("--merge", merge_,
+                "Run nothing: write the tables from what the shards have left in the folder")
+      ->excludes(shard)
+      ->excludes("--fresh");
 }
 
 Errors SweepRunner::check() const {
-  if (jobs_ >= 0 && jobs_ <= kMaxJobs) return {};
-  return {{"--jobs", 0, "",
-           "given " + std::to_string(jobs_) + "; allowed: 1 to " + std::to_string(kMaxJobs) +
-               ", or 0 for one for each processor"}};
+  Errors errors;
+  if (jobs_ < 0 || jobs_ > kMaxJobs) {
+    errors.push_back({"--jobs", 0, "",
+                      "given " + std::to_string(jobs_) + "; allowed: 1 to " +
+                          std::to_string(kMaxJobs) + ", or 0 for one for each processor"});
+  }
+  if (shard_ && !shard()) {
+    errors.push_back({"--shard", 0, "",
+                      "given " + in_quotes(*shard_) + "; allowed: I/N, I from 1 to N, N up to " +
+                          std::to_string(kMaxShards)});
+  }
+  return errors;
+}
+
+std::optional<Shard> SweepRunner::shard() const {
+  if (!shard_) return std::nullopt;
+  Shard shard{0, 0};
+  const char* const end = shard_->data() + shard_->size();
+  const auto [slash, wrong_index] = std::from_chars(shard_->data(), end, shard.index);
+  if (wrong_index != std::errc{} || slash == end || *slash != '/') return std::nullopt;
+  const auto [rest, wrong_count] = std::from_chars(slash + 1, end, shard.count);
+  const bool good = wrong_count == std::errc{} && rest == end && shard.index >= 1 &&
+                    shard.index <= shard.count && shard.count <= kMaxShards;
+  return good ? std::optional(shard) : std::nullopt;
+}
+
+Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std::string& folder,
+                                         bool fresh) const {
+  if (merge_) return merge_sweep(experiment, folder);
+  SweepOptions options;
+  options.jobs = static_cast<unsigned>(jobs_);
+  options.folder = folder;
+  options.shard = shard();
+  options.fresh = fresh;
+  options.stop = [] { return interrupt_signal() != 0; };
+  SweepProgressLine line(experiment.name);
+  options.progress = [&line](const SweepProgress& progress) { line.update(progress); };
+  return run_sweep(experiment, options);
 }
 
 int SweepRunner::run(const Experiment& experiment, const std::string& folder, bool fresh) const {
   watch_interrupts();
-  SweepOptions options;
-  options.jobs = static_cast<unsigned>(jobs_);
-  options.folder = folder;
-  options.fresh = fresh;
-  options.stop = [] { return interrupt_signal() != 0; };
-  Result<SweepResult> result = [&] {
-    SweepProgressLine line(experiment.name);
-    options.progress = [&line](const SweepProgress& progress) { line.update(progress); };
-    return run_sweep(experiment, options);
-  }();
+  const Result<SweepResult> result = results(experiment, folder, fresh);
   if (!result) return report(result.errors());
   if (result.value().interrupted) {
     std::cerr << "interrupted: finished trials are kept in " << folder
               << ", the same command goes on from there\n";
     return kSignal + interrupt_signal();
   }
-  const Report tables(experiment, result.value());
-  if (const auto error = write_tables(tables, folder, experiment.name)) return report({*error});
+  if (shard_) {
+    std::cout << "Shard " << *shard_
+              << " is finished. When all are, --merge with the same file and "
+              << "folder, " << folder << ", writes the tables.\n";
+    return kDone;
+  }
+  return write_tables(experiment, result.value(), folder);
+}
+
+int SweepRunner::write_tables(const Experiment& experiment, const SweepResult& result,
+                              const std::string& folder) const {
+  const Report tables(experiment, result);
+  const std::string& name = experiment.name;
+  const std::pair<std::string, std::string> files[] = {
+      {name + ".md", tables.markdown()},
+      {name + ".json", tables.json()},
+      {name + ".csv", tables.csv()},
+      {own_folder_ ? std::string(kTrialTable) : name + "-trials.csv",
+       trial_table(experiment, result)}};
+  for (const auto& [file, text] : files) {
+    const auto error = write_atomically(std::filesystem::path(folder) / file, text);
+    if (error) return report({*error});
+  }
   std::cout << tables.markdown() << "\n" << std::flush;
   const std::vector<std::string> missed = tables.missed_bounds();
   for (const std::string& text : missed) std::cerr << "missed: " << text << "\n";

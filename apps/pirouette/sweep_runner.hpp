@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pirouette/config/experiment_file.hpp"
+#include "pirouette/experiment/sweep.hpp"
 
 namespace pirouette::app {
 
@@ -13,24 +14,36 @@ namespace pirouette::app {
 class SweepRunner {
  public:
   void add_options(CLI::App& command, const std::string& default_folder);
+  /// --shard and --merge, for a folder that belongs to one experiment. After add_options.
+  void add_shard_options(CLI::App& command);
 
   /// --seeds and --turns.
   const ExperimentChanges& changes() const { return changes_; }
-  /// --jobs. Empty: all is well.
+  /// --jobs and --shard. Empty: all is well.
   Errors check() const;
   /// --out, else `fallback`.
   std::string folder(const std::string& fallback) const { return out_.value_or(fallback); }
   bool fresh() const { return fresh_; }
 
-  /// Runs what `folder` does not hold yet, writes NAME.md, NAME.json, NAME.csv and NAME-trials.csv
-  /// there and prints the tables. The program's exit code.
+  /// Runs what `folder` does not hold yet, writes NAME.md, NAME.json, NAME.csv and the table of all
+  /// trials there and prints the tables; a shard leaves its results only. The program's exit code.
   int run(const Experiment& experiment, const std::string& folder, bool fresh) const;
 
  private:
-  std::optional<std::string> out_;
+  /// --shard; absent when not given or wrong.
+  std::optional<Shard> shard() const;
+  Result<SweepResult> results(const Experiment& experiment, const std::string& folder,
+                              bool fresh) const;
+  int write_tables(const Experiment& experiment, const SweepResult& result,
+                   const std::string& folder) const;
+
+  std::optional<std::string> out_, shard_;
   ExperimentChanges changes_;
   int jobs_ = 0;
   bool fresh_ = false;
+  bool resume_ = false;  ///< what happens anyway; --fresh excludes it
+  bool merge_ = false;
+  bool own_folder_ = false;  ///< it belongs to one experiment
 };
 
 }  // namespace pirouette::app

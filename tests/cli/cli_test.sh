@@ -156,6 +156,14 @@ wrong 'nowhere.toml: no such file' sweep nowhere.toml
 wrong 'bad_row.toml:5: controller: given "acs"' sweep bad_row.toml
 wrong 'bad_key.toml:2: run.tunrs' sweep bad_key.toml
 wrong '--jobs: given -1' sweep experiment.toml --jobs -1
+for shard in 0/2 3/2 2 1/2/3 1/x -1/2 '' 1/100001; do
+  wrong "--shard: given \"$shard\"; allowed: I/N" sweep experiment.toml --shard "$shard"
+done
+wrong '--fresh excludes --shard' sweep experiment.toml --shard 1/2 --fresh
+wrong '--shard excludes --merge' sweep experiment.toml --shard 1/2 --merge
+wrong '--fresh excludes --resume' sweep experiment.toml --resume --fresh
+wrong '--shard' reproduce fig6 --shard 1/2
+wrong 'no results of 1 of 1 trials' sweep experiment.toml --merge
 wrong '--seeds: given 0' sweep experiment.toml --seeds 0
 wrong '--turns: given 0' sweep experiment.toml --turns 0
 wrong 'file' sweep experiment.toml --out file
@@ -214,14 +222,26 @@ grep -q '"fell": true' fallen/metrics.json || fail 'metrics.json does not tell o
 # A sweep, and the same again from what it left.
 "$program" sweep sandbox/experiment.toml --jobs 2 --seeds 2 --out swept > stdout 2> stderr ||
   fail 'a short sweep'
-cp swept/experiment-trials.csv first.csv && cp stdout first.md
+cp swept/table.csv first.csv && cp stdout first.md
 "$program" sweep sandbox/experiment.toml --jobs 1 --seeds 2 --out swept > stdout 2> stderr ||
   fail 'a sweep that was done'
 grep -q '2 of 2 trials were there' stderr || fail 'a finished sweep runs again'
-cmp -s swept/experiment-trials.csv first.csv && cmp -s stdout first.md || fail 'another table'
+cmp -s swept/table.csv first.csv && cmp -s stdout first.md || fail 'another table'
 [ "$(ls swept | xargs)" = \
-  'experiment-trials.csv experiment.csv experiment.json experiment.md results.jsonl traces' ] ||
+  'experiment.csv experiment.json experiment.md results.jsonl table.csv traces' ] ||
   fail 'files of a sweep'
+
+# The same in two parts.
+"$program" sweep sandbox/experiment.toml --seeds 2 --out parts --shard 2/2 > stdout 2> stderr ||
+  fail 'a shard'
+[ "$(ls parts | xargs)" = 'results-2of2.jsonl traces' ] || fail 'files of a shard'
+wrong 'no results of 1 of 2 trials; shards not finished: 1/2' \
+  sweep experiment.toml --seeds 2 --out ../parts --merge
+"$program" sweep sandbox/experiment.toml --seeds 2 --out parts --shard 1/2 > stdout 2> stderr ||
+  fail 'the other shard'
+"$program" sweep sandbox/experiment.toml --seeds 2 --out parts --merge > stdout 2> stderr ||
+  fail 'a merge'
+cmp -s parts/table.csv first.csv && cmp -s stdout first.md || fail 'another table from shards'
 
 # Programs of other packages.
 mkdir bin

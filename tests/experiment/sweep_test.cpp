@@ -8,9 +8,12 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "pirouette/config/toml.hpp"
 #include "pirouette/experiment/report.hpp"
+#include "pirouette/experiment/trial_table.hpp"
 #include "support/temp_folder.hpp"
 
 namespace pirouette {
@@ -85,8 +88,12 @@ class Sweeps : public test::TempFolderTest {
       ADD_FAILURE() << result.errors().front().to_string();
       return "";
     }
-    const Report report(experiment, result.value());
-    return report.trials_csv() + report.csv() + report.markdown() + report.json();
+    return all_text(experiment, result.value());
+  }
+
+  static std::string all_text(const Experiment& experiment, const SweepResult& result) {
+    const Report report(experiment, result);
+    return trial_table(experiment, result) + report.csv() + report.markdown() + report.json();
   }
 };
 
@@ -100,9 +107,9 @@ TEST_F(Sweeps, GiveTheSameTableForAnyNumberOfJobs) {
 TEST_F(Sweeps, GoOnAfterAnInterruptionInTheMiddleOfALine) {
   const Experiment experiment = load();
   const std::string whole = tables(experiment, options("whole", 2));
-  const std::string log = read(folder_ / "whole" / kResultsFile);
+  const std::string log = read(folder_ / "whole" / results_file({}));
   fs::create_directories(folder_ / "part");
-  std::ofstream(folder_ / "part" / kResultsFile) << log.substr(0, log.size() / 2);
+  std::ofstream(folder_ / "part" / results_file({})) << log.substr(0, log.size() / 2);
 
   SweepOptions resumed = options("part", 2);
   SweepProgress first, last;
@@ -141,6 +148,75 @@ TEST_F(Sweeps, KeepWhatIsFinishedWhenStopped) {
   ASSERT_TRUE(result);
   EXPECT_TRUE(result.value().interrupted);
   EXPECT_EQ(tables(experiment, options("run", 2)), tables(experiment, options("whole", 2)));
+}
+
+TEST_F(Sweeps, GiveTheSameTableFromShardsThatRunAtTheSameTime) {
+  const Experiment experiment = load();
+  const std::string whole = tables(experiment, options("whole", 2));
+  {
+    std::vector<std::jthread> shards;
+    for (unsigned index = 1; index <= 3; ++index) {
+      shards.emplace_back([&, index] {
+        SweepOptions part = options("sharded", 1);
+        part.shard = Shard{index, 3};
+        const Result<SweepResult> result = run_sweep(experiment, part);
+        EXPECT_TRUE(result && !result.value().interrupted);
+      });
+    }
+  }
+  const Result<SweepResult> merged = merge_sweep(experiment, folder_ / "sharded");
+  ASSERT_TRUE(merged) << merged.errors().front().to_string();
+  EXPECT_EQ(whole, all_text(experiment, merged.value()));
+  for (const auto& entry : fs::directory_iterator(folder_ / "whole" / kTracesFolder)) {
+    EXPECT_EQ(read(entry.path()),
+              read(folder_ / "sharded" / kTracesFolder / entry.path().filename()));
+  }
+
+  SweepOptions rest = options("sharded", 1);
+  rest.progress = [](const SweepProgress& progress) { EXPECT_EQ(progress.resumed, 8u); };
+  EXPECT_EQ(whole, tables(experiment, rest));
+}
+
+TEST_F(Sweeps, TellWhichShardsAreMissingFromAMerge) {
+  const Experiment experiment = load();
+  SweepOptions first = options("run", 2);
+  first.shard = Shard{1, 3};
+  ASSERT_TRUE(run_sweep(experiment, first));
+  const Result<SweepResult> merged = merge_sweep(experiment, folder_ / "run");
+  ASSERT_FALSE(merged);
+  EXPECT_EQ(
+      merged.errors().front().to_string(),
+      (folder_ / "run").string() + ": no results of 5 of 8 trials; shards not finished: 2/3, 3/3");
+}
+
+TEST_F(Sweeps, RefuseToWriteBesideAnotherProcessOfTheSameShard) {
+  const Experiment experiment = load();
+  fs::create_directories(folder_ / "run");
+  const Result<ResultsLog> other = ResultsLog::open(folder_ / "run", Shard{1, 2}, false);
+  ASSERT_TRUE(other);
+  SweepOptions same = options("run", 1);
+  same.shard = Shard{1, 2};
+  const Result<SweepResult> refused = run_sweep(experiment, same);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.errors().front().to_string().find("results-1of2.jsonl: is in use"),
+            std::string::npos);
+  SweepOptions fresh = options("run", 1);
+  fresh.fresh = true;
+  EXPECT_FALSE(run_sweep(experiment, fresh));
+}
+
+TEST_F(Sweeps, ForgetTheShardsToo) {
+  const Experiment experiment = load();
+  SweepOptions part = options("run", 2);
+  part.shard = Shard{1, 2};
+  ASSERT_TRUE(run_sweep(experiment, part));
+  SweepOptions fresh = options("run", 2);
+  fresh.fresh = true;
+  SweepProgress last;
+  fresh.progress = [&](const SweepProgress& progress) { last = progress; };
+  ASSERT_TRUE(run_sweep(experiment, fresh));
+  EXPECT_EQ(last.resumed, 0u);
+  EXPECT_FALSE(fs::exists(folder_ / "run" / results_file(Shard{1, 2})));
 }
 
 TEST_F(Sweeps, RefuseABadTerrainBeforeAnythingRuns) {

@@ -50,8 +50,6 @@ struct Report {
   std::string json() const;
   /// One line for each entry.
   std::string csv() const;
-  /// One line for each trial, in the order of the experiment.
-  std::string trials_csv() const;
   /// Each acceptance bound wherever it applies, in the order of the file. A fall misses it too.
   std::vector<BoundCheck> check_bounds() const;
   /// A sentence for each that is missed.

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 
 #include "pirouette/config/config_doc.hpp"
 
@@ -35,6 +36,15 @@ const ReportContext kContexts[] = {
 }  // namespace
 
 std::span<const ReportContext> report_contexts() { return kContexts; }
+
+std::string csv_cell(const std::string& text) {
+  if (text.find_first_of(",\"\n") == text.npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
+  return out + "\"";
+}
+
+std::string csv_cell(double value) { return nlohmann::json(value).dump(); }
 
 std::string short_number(double value) {
   char text[32];

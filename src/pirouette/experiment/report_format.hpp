@@ -18,6 +18,11 @@ struct ReportContext {
 };
 std::span<const ReportContext> report_contexts();
 
+/// A cell of CSV, in quotes where it needs them.
+std::string csv_cell(const std::string& text);
+/// The shortest text that reads back as the same number.
+std::string csv_cell(double value);
+
 /// Three significant digits.
 std::string short_number(double value);
 /// "1.23 ± 0.04"; without the deviation for a single seed.

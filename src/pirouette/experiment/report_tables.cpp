@@ -12,22 +12,12 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string exact(double value) { return Json(value).dump(); }
-
 /// x, y, z in the world, of the terrain's overall plane.
 std::vector<double> ground_normal(const Config& config) {
   const Result<TerrainSpec> spec = parse_terrain(config.plant.terrain);
   if (!spec) return {};  // run_sweep() has refused it
   const Vec3 normal = Terrain(spec.value(), static_cast<std::uint64_t>(config.run.seed)).normal();
   return {normal.x(), normal.y(), normal.z()};
-}
-
-/// A cell of CSV.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
-  std::string out = "\"";
-  for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
-  return out + "\"";
 }
 
 }  // namespace
@@ -88,8 +78,8 @@ std::string Report::json() const {
 std::string Report::csv() const {
   std::ostringstream out;
   out << "row,profile";
-  for (const ReportContext& context : report_contexts()) out << "," << quoted(context.title);
-  for (const ExperimentAxis& axis : experiment->axes) out << "," << quoted(axis.key);
+  for (const ReportContext& context : report_contexts()) out << "," << csv_cell(context.title);
+  for (const ExperimentAxis& axis : experiment->axes) out << "," << csv_cell(axis.key);
   out << ",trials,falls";
   for (const ExperimentColumn& column : experiment->columns) {
     out << "," << column.metric << "," << column.metric << ".deviation," << column.metric
@@ -98,44 +88,19 @@ std::string Report::csv() const {
   out << "\n";
   for (const ReportEntry& entry : entries) {
     const Config& config = entry.first->config;
-    out << quoted(entry.row->label) << "," << config.profile;
+    out << csv_cell(entry.row->label) << "," << config.profile;
     for (const ReportContext& context : report_contexts())
-      out << "," << quoted(context.text(config));
+      out << "," << csv_cell(context.text(config));
     for (std::size_t axis = 0; axis < experiment->axes.size(); ++axis) {
-      out << "," << quoted(experiment->axes[axis].values[entry.first->levels[axis]]);
+      out << "," << csv_cell(experiment->axes[axis].values[entry.first->levels[axis]]);
     }
     out << "," << entry.trials << "," << entry.falls;
     for (const ExperimentColumn& column : experiment->columns) {
       const Spread* spread = find_metric(entry, column.metric);
       const double* printed = find_printed(entry, column.metric);
-      out << "," << (spread != nullptr ? exact(spread->mean) : "") << ","
-          << (spread != nullptr ? exact(spread->deviation) : "") << ","
-          << (printed != nullptr ? exact(*printed) : "");
-    }
-    out << "\n";
-  }
-  return out.str();
-}
-
-std::string Report::trials_csv() const {
-  const std::vector<std::string> names = metric_names();
-  std::ostringstream out;
-  out << "trial,key,row";
-  for (const ExperimentAxis& axis : experiment->axes) out << "," << quoted(axis.key);
-  out << ",seed";
-  for (const std::string& name : names) out << "," << name;
-  out << "\n";
-  for (std::size_t i = 0; i < experiment->trials.size(); ++i) {
-    const ExperimentTrial& trial = experiment->trials[i];
-    out << i << "," << result->keys[i] << "," << quoted(experiment->rows[trial.row].label);
-    for (std::size_t axis = 0; axis < experiment->axes.size(); ++axis) {
-      out << "," << quoted(experiment->axes[axis].values[trial.levels[axis]]);
-    }
-    out << "," << trial.seed;
-    for (const std::string& name : names) {
-      const auto found = result->values[i].find(name);
-      const bool known = found != result->values[i].end() && found->second;
-      out << "," << (known ? exact(*found->second) : "");
+      out << "," << (spread != nullptr ? csv_cell(spread->mean) : "") << ","
+          << (spread != nullptr ? csv_cell(spread->deviation) : "") << ","
+          << (printed != nullptr ? csv_cell(*printed) : "");
     }
     out << "\n";
   }

@@ -1,22 +1,16 @@
 #include "pirouette/experiment/sweep.hpp"
 
-#include <fcntl.h>
-#include <sys/file.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <cstdint>
 #include <fstream>
+#include <map>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
-#include <string_view>
 #include <thread>
-#include <type_traits>
 
+#include "pirouette/base/fingerprint.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/path_file.hpp"
 #include "pirouette/config/suggest.hpp"
@@ -29,7 +23,6 @@ namespace pirouette {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
 std::string read_text(const fs::path& path) {
   std::ostringstream text;
@@ -37,117 +30,83 @@ std::string read_text(const fs::path& path) {
   return text.str();
 }
 
-/// FNV-1a, 64 bits: the same on every machine.
-class Fingerprint {
- public:
-  void add(std::string_view text) {
-    for (const char c : text) mix(static_cast<unsigned char>(c));
-    mix(kSeparator);
+/// Of a trace that is being written. Nobody else writes files with the suffix of our shard.
+std::string part_suffix(const std::optional<Shard>& shard) {
+  return shard ? ".part-" + shard->name() : ".part";
+}
+
+/// Removes what a killed process left of traces.
+void remove_parts(const fs::path& folder, const std::optional<Shard>& shard) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder / kTracesFolder, ignored)) {
+    if (entry.path().string().ends_with(part_suffix(shard))) fs::remove(entry.path(), ignored);
   }
+}
 
-  std::string hex() const {
-    constexpr std::string_view kDigits = "0123456789abcdef";
-    std::string text;
-    for (int shift = 60; shift >= 0; shift -= 4) text += kDigits[(value_ >> shift) & 0xf];
-    return text;
-  }
-
- private:
-  static constexpr std::uint64_t kSeparator = 0x100;  // no byte
-
-  void mix(std::uint64_t byte) { value_ = (value_ ^ byte) * 0x100000001b3; }
-
-  std::uint64_t value_ = 0xcbf29ce484222325;
-};
-
-/// The finished trials on disk: one line of JSON each, appended in one write.
-class ResultsLog {
- public:
-  static Result<ResultsLog> open(const fs::path& path, bool fresh) {
-    ResultsLog log;
-    log.path_ = path;
-    log.file_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-    if (log.file_ < 0) return Error{path.string(), 0, "", "cannot be written"};
-    if (::flock(log.file_, LOCK_EX | LOCK_NB) != 0) {
-      return Error{path.string(), 0, "", "is in use: another sweep writes to this folder"};
-    }
-    if (const auto error = fresh ? log.truncate(0) : log.read()) return *error;
-    return log;
-  }
-
-  ResultsLog(ResultsLog&& other) noexcept
-      : path_(std::move(other.path_)),
-        file_(std::exchange(other.file_, -1)),
-        finished_(std::move(other.finished_)) {}
-  ResultsLog& operator=(ResultsLog&&) = delete;
-  ~ResultsLog() {
-    if (file_ >= 0) ::close(file_);
-  }
-
-  const MetricValues* find(const std::string& key) const {
-    const auto found = finished_.find(key);
-    return found == finished_.end() ? nullptr : &found->second;
-  }
-
-  std::optional<Error> append(const std::string& key, const MetricValues& values) {
-    Json metrics = Json::object();
-    for (const auto& [name, value] : values) metrics[name] = value ? Json(*value) : Json(nullptr);
-    const std::string line = Json{{"trial", key}, {"metrics", metrics}}.dump() + "\n";
-    if (::write(file_, line.data(), line.size()) != static_cast<ssize_t>(line.size())) {
-      return Error{path_.string(), 0, "", "cannot be written: is the disk full?"};
-    }
-    finished_[key] = values;
-    return std::nullopt;
-  }
-
- private:
-  ResultsLog() = default;
-
-  std::optional<Error> truncate(std::size_t size) {
-    if (::ftruncate(file_, static_cast<off_t>(size)) == 0) return std::nullopt;
-    return Error{path_.string(), 0, "", "cannot be written"};
-  }
-
-  /// Reads the whole lines and cuts off what a killed process left of one.
-  std::optional<Error> read() {
-    const std::string text = read_text(path_);
-    std::size_t begin = 0;
-    for (std::size_t end = text.find('\n'); end != text.npos; end = text.find('\n', begin)) {
-      read_line(std::string_view(text).substr(begin, end - begin));
-      begin = end + 1;
-    }
-    return truncate(begin);
-  }
-
-  void read_line(std::string_view line) {
-    const Json entry = Json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (!entry.is_object() || !entry.contains("trial") || !entry["trial"].is_string() ||
-        !entry.contains("metrics") || !entry["metrics"].is_object()) {
-      return;
-    }
-    MetricValues values;
-    for (const auto& [name, value] : entry["metrics"].items()) {
-      values[name] = value.is_number() ? Number(value.get<double>()) : std::nullopt;
-    }
-    finished_[entry["trial"].get<std::string>()] = std::move(values);
-  }
-
-  fs::path path_;
-  int file_ = -1;
-  std::map<std::string, MetricValues> finished_;
-};
-
-/// A trial that must run, for all trials of the experiment that are equal to it.
+/// A trial, for all trials of the experiment that are equal to it.
 struct Job {
   std::string key;
   const Config* config = nullptr;
   bool keep_trace = false;
 };
 
+/// The experiment's different trials in the order of their first; fills in the keys of all.
+std::vector<Job> distinct_jobs(const Experiment& experiment, std::vector<std::string>& keys) {
+  std::vector<Job> jobs;
+  std::map<std::string, std::size_t> places;
+  for (const ExperimentTrial& trial : experiment.trials) {
+    keys.push_back(trial_key(trial.config));
+    const auto [place, is_new] = places.try_emplace(keys.back(), jobs.size());
+    if (is_new) jobs.push_back({keys.back(), &trial.config, false});
+    Job& job = jobs[place->second];
+    job.keep_trace = job.keep_trace || trial.keep_trace;
+  }
+  return jobs;
+}
+
+std::vector<Job> part_of(const std::vector<Job>& jobs, const Shard& shard) {
+  std::vector<Job> part;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (shard.holds(i)) part.push_back(jobs[i]);
+  }
+  return part;
+}
+
+bool is_finished(const Job& job, const ResultsLog& log, const fs::path& folder) {
+  std::error_code error;
+  return log.find(job.key) != nullptr &&
+         (!job.keep_trace || fs::exists(trace_path(folder, job.key), error));
+}
+
+void add_values(const ResultsLog& log, SweepResult& result) {
+  for (const std::string& key : result.keys) {
+    const MetricValues* values = log.find(key);
+    result.values.push_back(values != nullptr ? *values : MetricValues{});
+  }
+}
+
+/// "; shards not finished: 2/4, 3/4", when all shards that have run are of the same number.
+std::string unfinished_shards(const fs::path& folder, const std::vector<std::size_t>& missing) {
+  const std::vector<unsigned> counts = shard_counts(folder);
+  if (counts.size() != 1) return "";
+  std::vector<std::string> names;
+  for (Shard shard{1, counts.front()}; shard.index <= shard.count; ++shard.index) {
+    const bool unfinished = std::any_of(missing.begin(), missing.end(), [&](std::size_t position) {
+      return shard.holds(position);
+    });
+    if (unfinished)
+      names.push_back(std::to_string(shard.index) + "/" + std::to_string(shard.count));
+  }
+  return "; shards not finished: " + joined(names);
+}
+
 class Pool {
  public:
   Pool(std::vector<Job> jobs, std::size_t total, const SweepOptions& options, ResultsLog& log)
       : jobs_(std::move(jobs)), total_(total), options_(options), log_(log) {}
+
+  /// Whether every job has run.
+  bool complete() const { return done_ == jobs_.size(); }
 
   Errors run() {
     report();
@@ -182,7 +141,7 @@ class Pool {
     TrialOptions options;
     options.progress = [this](const TrialProgress&) { return !stopped(); };
     const fs::path path = trace_path(options_.folder, job.key);
-    const fs::path part = path.string() + ".part";
+    const fs::path part = path.string() + part_suffix(options_.shard);
     std::optional<TraceFile> trace;
     if (job.keep_trace) {
       Result<TraceFile> created = TraceFile::create(part);
@@ -229,7 +188,7 @@ class Pool {
   }
 
   const std::vector<Job> jobs_;
-  const std::size_t total_;  ///< different trials of the experiment
+  const std::size_t total_;  ///< with those that were finished before
   const SweepOptions& options_;
   ResultsLog& log_;
   const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
@@ -241,33 +200,6 @@ class Pool {
 };
 
 }  // namespace
-
-MetricValues metric_values(const Metrics& metrics) {
-  MetricValues values;
-  Metrics::fields(metrics, [&](const auto& value, const char* key, const char*, const char*) {
-    const std::string_view name = key;
-    if (name.starts_with("timing.") || name.starts_with("context.")) return;
-    using T = std::decay_t<decltype(value)>;
-    if constexpr (std::is_same_v<T, bool>) {
-      values[key] = value ? 1.0 : 0.0;
-    } else if constexpr (std::is_same_v<T, Number>) {
-      values[key] = value && std::isfinite(*value) ? value : std::nullopt;
-    } else if constexpr (std::is_same_v<T, double>) {
-      values[key] = std::isfinite(value) ? Number(value) : std::nullopt;
-    }
-  });
-  return values;
-}
-
-std::vector<std::string> metric_names() {
-  const Metrics metrics;
-  const MetricValues values = metric_values(metrics);
-  std::vector<std::string> names;
-  Metrics::fields(metrics, [&](const auto&, const char* key, const char*, const char*) {
-    if (values.contains(key)) names.emplace_back(key);
-  });
-  return names;
-}
 
 std::string trial_key(const Config& config) {
   Fingerprint fingerprint;
@@ -328,34 +260,40 @@ Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& 
   std::error_code error;
   fs::create_directories(options.folder / kTracesFolder, error);
   if (error) return Error{options.folder.string(), 0, "", "cannot be created: " + error.message()};
-  Result<ResultsLog> log = ResultsLog::open(options.folder / kResultsFile, options.fresh);
-  if (!log) return log.errors();
+  Result<ResultsLog> opened = ResultsLog::open(options.folder, options.shard, options.fresh);
+  if (!opened) return opened.errors();
+  ResultsLog& log = opened.value();
+  remove_parts(options.folder, options.shard);
 
   SweepResult result;
-  std::map<std::string, Job> distinct;
-  for (const ExperimentTrial& trial : experiment.trials) {
-    result.keys.push_back(trial_key(trial.config));
-    Job& job = distinct[result.keys.back()];
-    job = {result.keys.back(), &trial.config, job.keep_trace || trial.keep_trace};
-  }
-  std::vector<Job> pending;
-  for (const std::string& key : result.keys) {
-    const auto found = distinct.find(key);
-    if (found->second.config == nullptr) continue;  // taken already
-    const bool finished =
-        log.value().find(key) != nullptr &&
-        (!found->second.keep_trace || fs::exists(trace_path(options.folder, key), error));
-    if (!finished) pending.push_back(found->second);
-    found->second.config = nullptr;
-  }
-
-  errors = Pool(std::move(pending), distinct.size(), options, log.value()).run();
+  std::vector<Job> jobs = distinct_jobs(experiment, result.keys);
+  if (options.shard) jobs = part_of(jobs, *options.shard);
+  const std::size_t total = jobs.size();
+  std::erase_if(jobs, [&](const Job& job) { return is_finished(job, log, options.folder); });
+  Pool pool(std::move(jobs), total, options, log);
+  errors = pool.run();
   if (!errors.empty()) return errors;
-  for (const std::string& key : result.keys) {
-    const MetricValues* values = log.value().find(key);
-    result.values.push_back(values != nullptr ? *values : MetricValues{});
-    result.interrupted = result.interrupted || values == nullptr;
+  result.interrupted = !pool.complete();
+  add_values(log, result);
+  return result;
+}
+
+Result<SweepResult> merge_sweep(const Experiment& experiment, const fs::path& folder) {
+  const Errors errors = check_sweep(experiment);
+  if (!errors.empty()) return errors;
+  const ResultsLog log = ResultsLog::read(folder);
+  SweepResult result;
+  const std::vector<Job> jobs = distinct_jobs(experiment, result.keys);
+  std::vector<std::size_t> missing;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    if (!is_finished(jobs[i], log, folder)) missing.push_back(i);
   }
+  if (!missing.empty()) {
+    return Error{folder.string(), 0, "",
+                 "no results of " + std::to_string(missing.size()) + " of " +
+                     std::to_string(jobs.size()) + " trials" + unfinished_shards(folder, missing)};
+  }
+  add_values(log, result);
   return result;
 }
 

@@ -3,52 +3,44 @@
 
 #include <filesystem>
 #include <functional>
-#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "pirouette/base/result.hpp"
 #include "pirouette/config/experiment_file.hpp"
-#include "pirouette/experiment/metrics.hpp"
+#include "pirouette/experiment/metric_values.hpp"
+#include "pirouette/experiment/results_log.hpp"
 
 namespace pirouette {
 
-inline constexpr const char* kResultsFile = "results.jsonl";
 inline constexpr const char* kTracesFolder = "traces";
-
-/// The numbers of metrics.json by key; a bool is 0 or 1. Without context and wall-clock times, so
-/// equal configurations give equal numbers.
-using MetricValues = std::map<std::string, Number>;
-
-MetricValues metric_values(const Metrics& metrics);
-
-/// Keys of MetricValues in the order of metrics.json.
-std::vector<std::string> metric_names();
 
 /// 16 hexadecimal digits that stand for the trial: of its configuration, the files of robot and
 /// path, and the versions of this program and of the physics.
 std::string trial_key(const Config& config);
 
 struct SweepProgress {
-  std::size_t done = 0;     ///< of `total`, with those that were finished before
-  std::size_t resumed = 0;  ///< finished before
-  std::size_t total = 0;
+  std::size_t done = 0;       ///< of `total`, with those that were finished before
+  std::size_t resumed = 0;    ///< finished before
+  std::size_t total = 0;      ///< different trials of the experiment, or of the shard
   double seconds_left = 0.0;  ///< wall clock; 0 until the first trial of this time is done
 };
 
 struct SweepOptions {
   unsigned jobs = 0;  ///< threads; 0: one for each hardware thread
-  /// Where kResultsFile and kTracesFolder are; shared by experiments, which then share trials.
+  /// Where the results and kTracesFolder are; shared by experiments, which then share trials.
   std::filesystem::path folder;
-  bool fresh = false;                                  ///< forget what is there
+  std::optional<Shard> shard;                          ///< absent: all trials
+  bool fresh = false;                                  ///< forget what is there; not for a shard
   std::function<void(const SweepProgress&)> progress;  ///< one call at a time; may be empty
   std::function<bool()> stop;  ///< asked from all threads; true ends the sweep; may be empty
 };
 
 struct SweepResult {
   std::vector<std::string> keys;     ///< of the experiment's trials, in their order
-  std::vector<MetricValues> values;  ///< likewise; empty maps for trials that did not run
-  bool interrupted = false;
+  std::vector<MetricValues> values;  ///< likewise; empty maps for trials without a result
+  bool interrupted = false;          ///< not all that was to run has run
 };
 
 /// What would keep run_sweep() from starting: a robot's file, a terrain, a metric that there is
@@ -56,8 +48,12 @@ struct SweepResult {
 Errors check_sweep(const Experiment& experiment);
 
 /// Runs what `folder` does not hold yet, appending each trial as it finishes. The result does not
-/// depend on `jobs`, nor on how often the sweep was interrupted.
+/// depend on `jobs`, nor on how often the sweep was interrupted, nor on how it was sharded.
 Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& options);
+
+/// The result from what `folder` holds, without running anything; the error when trials are
+/// missing says how many, and of which shards.
+Result<SweepResult> merge_sweep(const Experiment& experiment, const std::filesystem::path& folder);
 
 /// Path of the trace of a trial with keep_trace.
 std::filesystem::path trace_path(const std::filesystem::path& folder, const std::string& key);
