@@ -2,20 +2,18 @@
 #pragma once
 
 #include <array>
+#include <span>
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/config/config.hpp"
-#include "pirouette/lowlevel/qp_solver.hpp"
+#include "pirouette/lowlevel/force_recursion.hpp"
+#include "pirouette/lowlevel/friction_pyramid.hpp"
+#include "pirouette/lowlevel/least_distance.hpp"
 #include "pirouette/types/contact_forces.hpp"
 
 namespace pirouette {
-
-inline constexpr int kMaxHorizon = 24;
-/// Forces planned at once; see QpSolver::kMaxVariables. A trot of duty 0.6 has 40 in 16 steps; four
-/// feet that stand have them in 10.
-inline constexpr int kMaxForces = QpSolver::kMaxVariables / 3;
 
 /// State of the single rigid body: attitude (rad, yaw unwrapped), CoM position, angular velocity
 /// and CoM velocity, all in world axes.
@@ -43,13 +41,12 @@ struct MpcInput {
   double dt = 0.03;          ///< s, length of a step
 };
 
-/// [DiCarlo18], condensed in closed form: docs/equations.md#convex-mpc.
+/// [DiCarlo18]: docs/equations.md#convex-mpc, docs/decisions/011-mpc-by-recursion.md.
 ///
 /// The linear dynamics (equations.md section 8) are integrated exactly over each step with forces
-/// held. Since A^3 = 0, the response of a state to a force is a polynomial in the number of steps
-/// between them, so each 3x3 block of the Hessian is built from suffix sums in constant time. Swing
-/// legs have no variables. The prediction ends at the horizon or before the step that would exceed
-/// kMaxForces.
+/// held. The optimum without force limits comes from a Riccati recursion; where it leaves a
+/// friction pyramid, an exact active-set solver goes on from there. Swing legs have no variables.
+/// The prediction ends at the horizon or before the step that would exceed kMaxForces.
 class ConvexMpc {
  public:
   /// `mass` in kg; `inertia_B` in kg m^2 about the CoM, trunk axes.
@@ -58,34 +55,23 @@ class ConvexMpc {
   /// Forces of the first step. kFailed: the solver gave up and the forces are zero.
   ContactForces update(const MpcInput& in) noexcept;
 
-  /// The condensed problem last built: for tests.
-  const QpSolver::Problem& problem() const { return *problem_; }
+  /// N, world axes: the whole plan last computed, by step and leg. For tests.
+  std::span<const Vec3> plan() const;
 
  private:
-  struct Variable {  ///< a force: which step, which leg
-    int step;
-    Leg leg;
-    Mat3 W;  ///< rad/s per N: change of angular velocity by this force over one step
-  };
-
-  void collect_variables(const MpcInput& in) noexcept;
-  void sum_rotations(const MpcInput& in) noexcept;
-  void fill_hessian(double dt) noexcept;
-  void fill_gradient(const MpcInput& in) noexcept;
-  void fill_constraints(const Vec3& n_W) noexcept;
+  void collect_forces(const MpcInput& in) noexcept;
+  void predict_free_motion(const MpcInput& in) noexcept;
+  QpSolution solve(const FrictionPyramid& pyramid) noexcept;
+  QpSolution solve_nearest(const FrictionPyramid& pyramid, int count, int max_iterations) noexcept;
+  int forces_until_last_violation(const FrictionPyramid& pyramid) const noexcept;
 
   MpcConfig config_;
-  double mass_;
   Mat3 inertia_B_;
-  QpSolver solver_;
-  QpSolver::Problem* problem_ = nullptr;
+  ForceRecursion recursion_;
+  LeastDistance active_set_;
 
-  std::array<Variable, kMaxForces> variables_;
-  int variable_count_ = 0;
-  int steps_ = 0;                    ///< of the prediction
-  std::array<Mat3, kMaxHorizon> T_;  ///< attitude rate per angular velocity, during step i (E24)
-  std::array<Mat3, kMaxHorizon + 1> S_;  ///< sum of dt T_i over i < k
-  std::array<Mat3, kMaxHorizon> C_;  ///< part of S_k that a force of step j does not act through
+  std::array<Vec3, kMaxForces> f_W_;
+  std::array<Mat3, kMaxForces> column_;  ///< of the factor J
 };
 
 }  // namespace pirouette

@@ -31,6 +31,9 @@ struct FrictionPyramid {
     C.row(5) = -n;
     lower << 0.0, 0.0, 0.0, 0.0, min_normal, -max_normal;
   }
+
+  /// N, per row; negative where `f` violates it.
+  Eigen::Matrix<double, kPyramidRows, 1> slack(const Vec3& f) const { return C * f - lower; }
 };
 
 }  // namespace pirouette

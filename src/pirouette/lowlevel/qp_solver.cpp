@@ -1,63 +1,50 @@
 #include "pirouette/lowlevel/qp_solver.hpp"
 
 #include <Eigen/Cholesky>
-#include <eiquadprog/eiquadprog-fast.hpp>
 
 namespace pirouette {
 
-namespace {
-
-// Slack below which a constraint counts as met, N: far below what any sensor or motor resolves.
-constexpr double kFeasibilityTolerance = 1e-6;
-
-using eiquadprog::solvers::EIQUADPROG_FAST_OPTIMAL;
-using eiquadprog::solvers::EiquadprogFast;
-
-}  // namespace
-
 struct QpSolver::Workspace {
-  Workspace(int unit, int rows_per_unit, int units, int max_iterations)
-      : Workspace(unit * units, rows_per_unit * units, max_iterations) {
-    variables_per_unit = unit;
-    rows = rows_per_unit;
-  }
-
-  Workspace(int n, int m, int max_iterations)
-      : factor(n, n), slack(m), negative_lower(m), no_equalities(0, n), no_offsets(0) {
+  Workspace(int unit, int rows_per_unit, int unit_count)
+      : variables_per_unit(unit),
+        rows(rows_per_unit),
+        units(unit_count),
+        cholesky(unit * unit_count),
+        J(unit * unit_count, unit * unit_count),
+        slack(rows_per_unit * unit_count) {
+    const int n = unit * unit_count, m = rows_per_unit * unit_count;
     problem.H.setIdentity(n, n);
     problem.g.setZero(n);
     problem.C.setZero(m, n);
     problem.lower.setZero(m);
     problem.x.setZero(n);
-    active_set.reset(static_cast<size_t>(n), 0, static_cast<size_t>(m));
-    active_set.setMaxIter(max_iterations);
+  }
+
+  /// The rows and columns of C that are not zero.
+  auto own_constraints(int unit) const {
+    return problem.C.block(unit * rows, unit * variables_per_unit, rows, variables_per_unit);
   }
 
   void find_slack() noexcept {
     slack = -problem.lower;
-    for (Eigen::Index row = 0, column = 0; row < slack.size();
-         row += rows, column += variables_per_unit) {
-      slack.segment(row, rows).noalias() +=
-          problem.C.block(row, column, rows, variables_per_unit)
-              .lazyProduct(problem.x.segment(column, variables_per_unit));
+    for (int i = 0; i < units; ++i) {
+      slack.segment(i * rows, rows).noalias() += own_constraints(i).lazyProduct(
+          problem.x.segment(i * variables_per_unit, variables_per_unit));
     }
   }
 
-  int variables_per_unit = 1;
-  int rows = 1;  ///< of constraints per unit
+  int variables_per_unit, rows, units;  ///< rows of constraints per unit
   Problem problem;
-  Eigen::MatrixXd factor;
+  Eigen::LLT<Eigen::MatrixXd> cholesky;
+  Eigen::MatrixXd J;
   Eigen::VectorXd slack;
-  Eigen::VectorXd negative_lower;
-  Eigen::MatrixXd no_equalities;
-  Eigen::VectorXd no_offsets;
-  EiquadprogFast active_set;
 };
 
-QpSolver::QpSolver(int unit, int rows_per_unit, int max_units, int max_iterations) {
+QpSolver::QpSolver(int unit, int rows_per_unit, int max_units, int max_iterations)
+    : max_iterations_(max_iterations), active_set_(unit, rows_per_unit, max_units) {
   workspaces_.reserve(static_cast<size_t>(max_units));
   for (int k = 1; k <= max_units; ++k) {
-    workspaces_.push_back(std::make_unique<Workspace>(unit, rows_per_unit, k, max_iterations));
+    workspaces_.push_back(std::make_unique<Workspace>(unit, rows_per_unit, k));
   }
   current_ = workspaces_.front().get();
 }
@@ -74,31 +61,33 @@ QpSolver::Problem& QpSolver::prepare(int units) noexcept {
 QpSolution QpSolver::solve() noexcept {
   Workspace& w = *current_;
   Problem& p = w.problem;
+  QpSolution solution = {SolveStatus::kFailed, 0};
+  w.cholesky.compute(p.H);
+  if (w.cholesky.info() == Eigen::Success) {
+    p.x = -p.g;
+    w.cholesky.solveInPlace(p.x);
+    w.find_slack();
+    if (w.slack.allFinite()) {
+      solution.status = SolveStatus::kUnconstrained;
+      if (w.slack.minCoeff() < -kFeasibilityTolerance) solution = solve_constrained(w);
+    }
+  }
+  if (solution.status == SolveStatus::kFailed) p.x.setZero();
+  return solution;
+}
 
-  w.factor = p.H;
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> cholesky(w.factor);
-  if (cholesky.info() != Eigen::Success) {
-    p.x.setZero();
-    return {SolveStatus::kFailed, 0};
+QpSolution QpSolver::solve_constrained(Workspace& w) noexcept {
+  w.J.setIdentity();
+  w.cholesky.matrixU().solveInPlace(w.J);
+  LeastDistance::Problem& nearest = active_set_.prepare(w.units);
+  for (int i = 0; i < w.units; ++i) {
+    nearest.C.middleRows(i * w.rows, w.rows) = w.own_constraints(i).lazyProduct(
+        w.J.middleRows(i * w.variables_per_unit, w.variables_per_unit));
   }
-  p.x = -p.g;
-  cholesky.solveInPlace(p.x);
-  w.find_slack();
-  if (!w.slack.allFinite()) {
-    p.x.setZero();
-    return {SolveStatus::kFailed, 0};
-  }
-  if (w.slack.minCoeff() >= -kFeasibilityTolerance) return {SolveStatus::kUnconstrained, 0};
-
-  w.negative_lower = -p.lower;
-  const auto status = w.active_set.solve_quadprog(p.H, p.g, w.no_equalities, w.no_offsets, p.C,
-                                                  w.negative_lower, p.x);
-  const int iterations = w.active_set.getIteratios();
-  if (status != EIQUADPROG_FAST_OPTIMAL || !p.x.allFinite()) {
-    p.x.setZero();
-    return {SolveStatus::kFailed, iterations};
-  }
-  return {SolveStatus::kConstrained, iterations};
+  nearest.lower = -w.slack;
+  const QpSolution solution = active_set_.solve(max_iterations_);
+  w.problem.x.noalias() += w.J * nearest.y;
+  return solution;
 }
 
 }  // namespace pirouette

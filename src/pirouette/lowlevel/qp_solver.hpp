@@ -1,25 +1,19 @@
-// The one place that knows the QP library: strictly convex, inequality-constrained, no allocation
-// while solving.
+// Strictly convex, inequality-constrained QP given by its matrices; no allocation while solving.
 #pragma once
 
 #include <Eigen/Core>
 #include <memory>
 #include <vector>
 
-#include "pirouette/types/contact_forces.hpp"
+#include "pirouette/lowlevel/least_distance.hpp"
 
 namespace pirouette {
-
-struct QpSolution {
-  SolveStatus status = SolveStatus::kUnconstrained;
-  int iterations = 0;  ///< of the active-set solver
-};
 
 /// minimise 1/2 x' H x + g' x  subject to  C x >= lower,  H positive definite.
 ///
 /// The caller fills H, g, C and lower of a problem of the size at hand (`prepare`), then solves.
-/// The unconstrained optimum (one Cholesky factorisation) is tried first; when it violates a
-/// constraint the exact active-set solver (Goldfarb-Idnani, eiquadprog) takes over, under the
+/// The unconstrained optimum (one Cholesky factorisation H = L L') is tried first; when it violates
+/// a constraint the exact active-set solver takes over with the factor J = L'^-1, under the
 /// iteration cap.
 class QpSolver {
  public:
@@ -31,13 +25,8 @@ class QpSolver {
     Eigen::VectorXd x;      ///< n, the solution
   };
 
-  /// Up to here the active-set library works without the heap. The triangular inverse that it
-  /// begins with takes n^2 numbers of scratch memory, from the stack while they are at most 128
-  /// KiB: n <= 128.
-  static constexpr int kMaxVariables = 126;
-
   /// Sizes the workspaces for every problem of `unit * k` variables, k = 1 .. `max_units`, with
-  /// `rows_per_unit * k` constraints; at most kMaxVariables.
+  /// `rows_per_unit * k` constraints; at most LeastDistance::kMaxVariables.
   QpSolver(int unit, int rows_per_unit, int max_units, int max_iterations);
   QpSolver(QpSolver&&) noexcept;
   QpSolver& operator=(QpSolver&&) noexcept;
@@ -50,6 +39,10 @@ class QpSolver {
 
  private:
   struct Workspace;
+  QpSolution solve_constrained(Workspace& w) noexcept;
+
+  int max_iterations_;
+  LeastDistance active_set_;
   std::vector<std::unique_ptr<Workspace>> workspaces_;
   Workspace* current_ = nullptr;
 };

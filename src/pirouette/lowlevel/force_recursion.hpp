@@ -1,0 +1,94 @@
+// Optimal contact forces of the linear single rigid body without force limits, by dynamic
+// programming.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/base/math.hpp"
+#include "pirouette/config/config.hpp"
+
+namespace pirouette {
+
+inline constexpr int kMaxHorizon = 24;
+/// Forces planned at once. A trot of duty 0.6 has 40 in 16 steps; four feet that stand have them in
+/// 10.
+inline constexpr int kMaxForces = 42;
+
+/// Change of the body's state by the forces: attitude (rad), CoM position, angular velocity and CoM
+/// velocity, world axes.
+using BodyDeviation = Eigen::Matrix<double, 12, 1>;
+
+/// A force of the prediction: when, where, and what it does.
+struct PlannedForce {
+  int step = 0;
+  Leg leg = Leg::kFR;
+  Mat3 W;  ///< rad/s per N: change of angular velocity by this force over its step
+};
+
+/// What the forces are to achieve. Forces are ordered by step.
+struct ForceProblem {
+  double dt = 0.0;  ///< s, length of a step
+  int steps = 0;
+  int forces = 0;
+  std::array<Mat3, kMaxHorizon> T;  ///< attitude rate per angular velocity, during a step (E24)
+  std::array<BodyDeviation, kMaxHorizon> free_error;  ///< at a step's end, had no force acted
+  std::array<PlannedForce, kMaxForces> force;
+};
+
+/// Riccati recursion over single forces: docs/equations.md#force-recursion.
+///
+/// The forces of a step act one after the other on the state that the step's motion has reached, so
+/// that every stage of the recursion has three inputs. Each stage also is a row of blocks of the
+/// factor J of the condensed problem's inverse Hessian J J': with y = 0 the roll-out gives the
+/// optimum f*, and any other plan is f = f* + J y at the additional cost |y|^2.
+class ForceRecursion {
+ public:
+  /// `mass` in kg.
+  ForceRecursion(const MpcConfig& config, double mass);
+
+  /// The problem, to be filled before `sweep`.
+  ForceProblem& problem() { return problem_; }
+  const ForceProblem& problem() const { return problem_; }
+
+  /// Backwards, from the horizon's end. False: not positive definite.
+  bool sweep() noexcept;
+
+  /// Forwards: N, the forces f* + J y. `y` may be shorter than the plan; the rest of it counts as
+  /// zero.
+  void roll_out(const Eigen::VectorXd& y, std::array<Vec3, kMaxForces>& f_W) const noexcept;
+
+  /// Column `j` of J in 3 x 3 blocks: column[i], i = j .. count - 1. Those above are zero.
+  void factor_column(int j, int count, std::array<Mat3, kMaxForces>& column) const noexcept;
+
+ private:
+  using Mat12x3 = Eigen::Matrix<double, 12, 3>;
+
+  /// f = Z (y - y0 - Y' d) for the deviation d that the force finds.
+  struct Feedback {
+    Mat12x3 Y;
+    Vec3 y0;
+    Mat3 Z;  ///< upper triangular
+  };
+
+  template <int Rows>
+  Eigen::Matrix<double, Rows, 3> times_input(const Eigen::Matrix<double, Rows, 12>& M,
+                                             const PlannedForce& force) const noexcept;
+  template <int Columns>
+  void apply(const PlannedForce& force, const Eigen::Matrix<double, 3, Columns>& f,
+             Eigen::Matrix<double, 12, Columns>& d) const noexcept;
+  template <int Columns>
+  void advance(int step, Eigen::Matrix<double, 12, Columns>& d) const noexcept;
+  void carry_back(int step) noexcept;
+
+  BodyDeviation weight_;
+  double weight_force_;
+  double mass_;
+  ForceProblem problem_;
+  std::array<Feedback, kMaxForces> feedback_;
+  Eigen::Matrix<double, 12, 12> P_;  ///< the cost to go is d' P d + 2 q' d
+  BodyDeviation q_;
+};
+
+}  // namespace pirouette
