@@ -66,9 +66,9 @@ TEST_F(SpinOfAnotherFile, DoesNotDependOnTheOrderOfTheLegs) {
   }
 }
 
-/// Without noise, four turns.
+/// Without noise, two turns.
 Metrics clean_spin(std::vector<std::string> overrides) {
-  overrides.insert(overrides.end(), {"plant.sensors.ideal=true", "run.turns=4"});
+  overrides.insert(overrides.end(), {"plant.sensors.ideal=true", "run.turns=2"});
   return test::spin(overrides);
 }
 
