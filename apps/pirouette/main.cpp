@@ -14,7 +14,9 @@
 
 #include "config_command.hpp"
 #include "exit_code.hpp"
+#include "montecarlo_command.hpp"
 #include "pirouette/config/validate.hpp"
+#include "pirouette/experiment/replay.hpp"
 #include "pirouette/experiment/trial.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
@@ -37,27 +39,8 @@ namespace {
 
 /// The arguments as one line that a shell takes again.
 std::string shell_line(int argc, char** argv) {
-  constexpr const char* kPlain =
-      "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
   std::string line = "pirouette";
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    const bool plain = !argument.empty() && argument.find_first_not_of(kPlain) == argument.npos;
-    line += " ";
-    if (plain) {
-      line += argument;
-      continue;
-    }
-    line += '\'';
-    for (const char c : argument) {
-      if (c == '\'') {
-        line += "'\\''";
-      } else {
-        line += static_cast<unsigned char>(c) < ' ' || c == '\x7f' ? '?' : c;
-      }
-    }
-    line += '\'';
-  }
+  for (int i = 1; i < argc; ++i) line += " " + shell_word(argv[i]);
   return line;
 }
 
@@ -118,6 +101,7 @@ int run(int argc, char** argv) {
   const RunCommand spin(app, RunCommand::Kind::kSpin, command_line);
   const RunCommand turn(app, RunCommand::Kind::kTurn, command_line);
   const SweepCommand sweep(app);
+  const MontecarloCommand montecarlo(app);
   const ReproduceCommand reproduce(app);
   const ConfigCommand config(app);
 
@@ -135,6 +119,7 @@ int run(int argc, char** argv) {
   if (spin.chosen()) return spin.run();
   if (turn.chosen()) return turn.run();
   if (sweep.chosen()) return sweep.run();
+  if (montecarlo.chosen()) return montecarlo.run();
   if (reproduce.chosen()) return reproduce.run();
   if (config.chosen()) return config.run();
   std::cout << app.help();

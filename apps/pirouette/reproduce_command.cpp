@@ -50,6 +50,7 @@ ReproduceCommand::ReproduceCommand(CLI::App& app) {
                    "all that have a source, or one of: " + joined(known_experiments()))
       ->required();
   runner_.add_options(*command_, "reports");
+  runner_.add_seed_options(*command_);
 }
 
 Result<std::vector<Experiment>> ReproduceCommand::load() const {

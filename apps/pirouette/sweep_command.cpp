@@ -8,6 +8,7 @@ SweepCommand::SweepCommand(CLI::App& app) {
   command_ = app.add_subcommand("sweep", "Run the trials of an experiment file in parallel");
   command_->add_option("FILE", file_, "Experiment, such as experiments/fig6.toml")->required();
   runner_.add_options(*command_, "runs/sweep-NAME");
+  runner_.add_seed_options(*command_);
   runner_.add_shard_options(*command_);
 }
 

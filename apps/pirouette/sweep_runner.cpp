@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <iostream>
 #include <utility>
+#include <vector>
 
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/experiment/report.hpp"
+#include "pirouette/experiment/survival_report.hpp"
 #include "pirouette/experiment/trial_table.hpp"
 
 namespace pirouette::app {
@@ -58,12 +60,33 @@ class SweepProgressLine {
   std::size_t next_ = 0;
 };
 
+struct Tables {
+  std::vector<std::pair<std::string, std::string>> files;  ///< name and text
+  std::string text;                                        ///< for people
+  std::vector<std::string> missed;
+};
+
+Tables comparison_tables(const Experiment& experiment, const SweepResult& result) {
+  const Report report(experiment, result);
+  const std::string& name = experiment.name;
+  const std::string text = report.markdown();
+  return {{{name + ".md", text}, {name + ".json", report.json()}, {name + ".csv", report.csv()}},
+          text,
+          report.missed_bounds()};
+}
+
+Tables survival_tables(const Experiment& experiment, const SweepResult& result) {
+  const SurvivalReport report(experiment, result);
+  const std::string text = report.markdown();
+  return {{{experiment.name + ".md", text}, {experiment.name + ".json", report.json()}},
+          text,
+          report.missed_bounds()};
+}
+
 }  // namespace
 
 void SweepRunner::add_options(CLI::App& command, const std::string& default_folder) {
   command.add_option("--jobs", jobs_, "Trials at the same time [one for each processor]")
-      ->type_name("N");
-  command.add_option("--seeds", changes_.seeds, "Seeds 1 to N instead of the file's")
       ->type_name("N");
   command.add_option("--turns", changes_.turns, "Turns of every trial instead of the file's")
       ->type_name("N");
@@ -76,6 +99,18 @@ void SweepRunner::add_options(CLI::App& command, const std::string& default_fold
       command.add_flag("--fresh", fresh_, "Run everything again, as after a change of the code");
   command.add_flag("--resume", resume_, "Run only what is not finished there; the default")
       ->excludes(fresh);
+}
+
+void SweepRunner::add_seed_options(CLI::App& command) {
+  command.add_option("--seeds", changes_.seeds, "Seeds 1 to N instead of the file's")
+      ->type_name("N");
+}
+
+void SweepRunner::add_draw_options(CLI::App& command) {
+  command.add_option("--trials", changes_.trials, "Number of trials instead of the file's")
+      ->type_name("N");
+  command.add_option("--seed", changes_.draw_seed, "Of the draws, instead of the file's")
+      ->type_name("N");
 }
 
 void SweepRunner::add_shard_options(CLI::App& command) {
@@ -154,22 +189,18 @@ int SweepRunner::run(const Experiment& experiment, const std::string& folder, bo
 
 int SweepRunner::write_tables(const Experiment& experiment, const SweepResult& result,
                               const std::string& folder) const {
-  const Report tables(experiment, result);
-  const std::string& name = experiment.name;
-  const std::pair<std::string, std::string> files[] = {
-      {name + ".md", tables.markdown()},
-      {name + ".json", tables.json()},
-      {name + ".csv", tables.csv()},
-      {own_folder_ ? std::string(kTrialTable) : name + "-trials.csv",
-       trial_table(experiment, result)}};
+  const Tables tables = experiment.random ? survival_tables(experiment, result)
+                                          : comparison_tables(experiment, result);
+  std::vector<std::pair<std::string, std::string>> files = tables.files;
+  files.emplace_back(own_folder_ ? kTrialTable : experiment.name + "-trials.csv",
+                     trial_table(experiment, result));
   for (const auto& [file, text] : files) {
     const auto error = write_atomically(std::filesystem::path(folder) / file, text);
     if (error) return report({*error});
   }
-  std::cout << tables.markdown() << "\n" << std::flush;
-  const std::vector<std::string> missed = tables.missed_bounds();
-  for (const std::string& text : missed) std::cerr << "missed: " << text << "\n";
-  return missed.empty() ? kDone : kFell;
+  std::cout << tables.text << "\n" << std::flush;
+  for (const std::string& text : tables.missed) std::cerr << "missed: " << text << "\n";
+  return tables.missed.empty() ? kDone : kFell;
 }
 
 }  // namespace pirouette::app

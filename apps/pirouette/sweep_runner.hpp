@@ -10,14 +10,19 @@
 
 namespace pirouette::app {
 
-/// Options of `sweep` and `reproduce`. Bound to a subcommand; must outlive the parsing.
+/// Options of `sweep`, `montecarlo` and `reproduce`. Bound to a subcommand; must outlive the
+/// parsing.
 class SweepRunner {
  public:
   void add_options(CLI::App& command, const std::string& default_folder);
+  /// --seeds.
+  void add_seed_options(CLI::App& command);
+  /// --trials and --seed.
+  void add_draw_options(CLI::App& command);
   /// --shard and --merge, for a folder that belongs to one experiment. After add_options.
   void add_shard_options(CLI::App& command);
 
-  /// --seeds and --turns.
+  /// --turns, --seeds, --trials and --seed.
   const ExperimentChanges& changes() const { return changes_; }
   /// --jobs and --shard. Empty: all is well.
   Errors check() const;

@@ -164,6 +164,28 @@ wrong '--shard excludes --merge' sweep experiment.toml --shard 1/2 --merge
 wrong '--fresh excludes --resume' sweep experiment.toml --resume --fresh
 wrong '--shard' reproduce fig6 --shard 1/2
 wrong 'no results of 1 of 1 trials' sweep experiment.toml --merge
+cat > sandbox/random.toml <<'TOML'
+trials = 100
+[common]
+run.turns = 0.02
+run.settle_time = 0.1
+gait.stand_time = 0.2
+[random]
+run.rate = {uniform = [0.3, 1.2], either_sign = true}
+[[rows]]
+label = "flat"
+controller = "asc"
+[[rows]]
+label = "slope"
+controller = "pirouette"
+[rows.random]
+plant.terrain = {uniform = [1, 10], text = "slope:{}"}
+TOML
+wrong 'FILE' montecarlo
+wrong 'experiment.toml: trials: missing' montecarlo experiment.toml
+wrong '--trials: given 0' montecarlo random.toml --trials 0
+wrong '--seeds: given 2 for an experiment that draws its seeds' sweep random.toml --seeds 2
+wrong '--seeds' montecarlo random.toml --seeds 2
 wrong '--seeds: given 0' sweep experiment.toml --seeds 0
 wrong '--turns: given 0' sweep experiment.toml --turns 0
 wrong 'file' sweep experiment.toml --out file
@@ -242,6 +264,19 @@ wrong 'no results of 1 of 2 trials; shards not finished: 1/2' \
 "$program" sweep sandbox/experiment.toml --seeds 2 --out parts --merge > stdout 2> stderr ||
   fail 'a merge'
 cmp -s parts/table.csv first.csv && cmp -s stdout first.md || fail 'another table from shards'
+
+# Random trials, of which the worst is run again as the report says.
+"$program" montecarlo sandbox/random.toml --trials 4 --seed 3 --out drawn > stdout 2> stderr ||
+  fail 'four random trials'
+[ "$(ls drawn | xargs)" = 'random.json random.md results.jsonl table.csv traces' ] ||
+  fail 'files of random trials'
+cmp -s drawn/table.csv <("$program" montecarlo sandbox/random.toml --trials 4 --seed 4 --out other \
+  > stdout 2> stderr && cat other/table.csv) && fail 'another seed, the same trials'
+line=$(grep -m 1 '^    pirouette spin' drawn/random.md)
+seed=$(sed 's/.*--seed \([0-9]*\).*/\1/' <<< "$line")
+eval "\"$program\" ${line#*pirouette } --json" > stdout 2> stderr || fail "replay: $line"
+rate=$(sed -n 's/.*"yaw_rate_mean": \([-0-9.e]*\).*/\1/p' stdout)
+grep ",$seed," drawn/table.csv | grep -q -F ",$rate," || fail "the replay differs: $line"
 
 # Programs of other packages.
 mkdir bin

@@ -165,5 +165,26 @@ TEST(ZeroPhaseLowpass, IsEmptyWhereItMeansNothing) {
   EXPECT_TRUE(zero_phase_lowpass(std::vector<double>(100, 1.0), 30.0, 20.0).empty());
 }
 
+/// [Newcombe98], table I, method 3.
+TEST(Wilson, GivesThePublishedIntervals) {
+  const auto expect = [](std::size_t count, std::size_t trials, double low, double high) {
+    const std::optional<Interval> interval = wilson_interval(count, trials);
+    ASSERT_TRUE(interval);
+    EXPECT_NEAR(interval->low, low, 5e-5);  // printed with four digits
+    EXPECT_NEAR(interval->high, high, 5e-5);
+  };
+  expect(81, 263, 0.2553, 0.3662);
+  expect(15, 148, 0.0624, 0.1605);
+  expect(0, 20, 0.0, 0.1611);
+  expect(1, 29, 0.0061, 0.1718);
+}
+
+TEST(Wilson, MirrorsSuccessAndFailure) {
+  const Interval falls = *wilson_interval(5, 1000), survived = *wilson_interval(995, 1000);
+  EXPECT_NEAR(falls.low, 1.0 - survived.high, 1e-15);
+  EXPECT_NEAR(falls.high, 1.0 - survived.low, 1e-15);
+  EXPECT_FALSE(wilson_interval(0, 0));
+}
+
 }  // namespace
 }  // namespace pirouette

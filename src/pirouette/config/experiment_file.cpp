@@ -1,10 +1,12 @@
 #include "pirouette/config/experiment_file.hpp"
 
 #include <algorithm>
+#include <set>
 #include <utility>
 
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/experiment_reader.hpp"
+#include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
 #include "pirouette/config/validate.hpp"
@@ -24,6 +26,11 @@ class Expansion {
       : experiment_(experiment), settings_(settings), changes_(changes), errors_(errors) {}
 
   void run() {
+    if (experiment_.rows.empty()) return;
+    if (experiment_.random) {
+      draw_trials(*experiment_.random);
+      return;
+    }
     for (std::size_t row = 0; row < experiment_.rows.size(); ++row) {
       std::vector<std::size_t> levels(experiment_.axes.size(), 0);
       do {
@@ -58,6 +65,28 @@ class Expansion {
                             *config};
       trial.config.run.seed = seed;
       experiment_.trials.push_back(std::move(trial));
+    }
+  }
+
+  void draw_trials(const RandomPart& random) {
+    const std::size_t rows = experiment_.rows.size();
+    for (std::int64_t number = 0; number < random.trials; ++number) {
+      const std::size_t row = static_cast<std::size_t>(number) % rows;
+      if (row == 0 && !errors_.empty()) return;
+      std::vector<ExperimentSetting> settings = settings_.common;
+      const auto add_draws = [&](const std::vector<ExperimentDraw>& draws) {
+        for (const ExperimentDraw& draw : draws) {
+          settings.push_back({draw.key, drawn_value(draw, random.seed, number), draw.line});
+        }
+      };
+      add_draws(random.draws);
+      const auto& own = settings_.rows[row];
+      settings.insert(settings.end(), own.begin(), own.end());
+      add_draws(experiment_.rows[row].draws);
+      std::optional<Config> config = load(row, settings);
+      if (!config) continue;
+      config->run.seed = drawn_seed(random.seed, number);
+      experiment_.trials.push_back({row, {}, config->run.seed, false, *std::move(config)});
     }
   }
 
@@ -131,12 +160,61 @@ class Expansion {
   Errors& errors_;
 };
 
+void change_seeds(const ExperimentChanges& changes, Experiment& experiment, Errors& errors) {
+  const std::string file = experiment.file.string();
+  if (changes.trials || changes.draw_seed) {
+    errors.push_back({file, 0, "trials", "missing: pirouette sweep runs what is not drawn"});
+  }
+  if (!changes.seeds) return;
+  if (*changes.seeds < 1 || *changes.seeds > kMaxSeeds) {
+    errors.push_back({"--seeds", 0, "",
+                      "given " + std::to_string(*changes.seeds) + "; allowed: 1 to " +
+                          std::to_string(kMaxSeeds)});
+    return;
+  }
+  experiment.seeds.clear();
+  for (std::int64_t seed = 1; seed <= *changes.seeds; ++seed) experiment.seeds.push_back(seed);
+}
+
+void change_draws(const ExperimentChanges& changes, Experiment& experiment, Errors& errors) {
+  if (changes.seeds) {
+    errors.push_back({"--seeds", 0, "",
+                      "given " + std::to_string(*changes.seeds) +
+                          " for an experiment that draws "
+                          "its seeds; allowed: pirouette montecarlo with --trials and --seed"});
+  }
+  const auto change = [&](const char* option, const std::optional<std::int64_t>& value,
+                          std::int64_t min, std::int64_t max, std::int64_t& out) {
+    if (!value) return;
+    if (*value >= min && *value <= max) {
+      out = *value;
+      return;
+    }
+    errors.push_back({option, 0, "",
+                      "given " + std::to_string(*value) + "; allowed: " + std::to_string(min) +
+                          " to " + std::to_string(max)});
+  };
+  change("--trials", changes.trials, 1, kMaxTrials, experiment.random->trials);
+  change("--seed", changes.draw_seed, 0, kMaxDrawSeed, experiment.random->seed);
+}
+
 }  // namespace
 
 std::vector<std::string> known_experiments() { return toml_stems(data_dir() / "experiments"); }
 
 fs::path experiment_path(const std::string& name) {
   return data_dir() / "experiments" / (name + ".toml");
+}
+
+std::vector<std::string> Experiment::random_keys() const {
+  std::set<std::string> keys;
+  if (random) {
+    for (const ExperimentDraw& draw : random->draws) keys.insert(draw.key);
+  }
+  for (const ExperimentRow& row : rows) {
+    for (const ExperimentDraw& draw : row.draws) keys.insert(draw.key);
+  }
+  return {keys.begin(), keys.end()};
 }
 
 Result<Experiment> load_experiment(const fs::path& file, const ExperimentChanges& changes) {
@@ -148,15 +226,10 @@ Result<Experiment> load_experiment(const fs::path& file, const ExperimentChanges
   experiment.name = file.stem().string();
   ExperimentSettings settings;
   read_experiment(*table, experiment, settings, errors);
-  if (changes.seeds) {
-    if (*changes.seeds < 1 || *changes.seeds > kMaxSeeds) {
-      errors.push_back({"--seeds", 0, "",
-                        "given " + std::to_string(*changes.seeds) + "; allowed: 1 to " +
-                            std::to_string(kMaxSeeds)});
-    } else {
-      experiment.seeds.clear();
-      for (std::int64_t seed = 1; seed <= *changes.seeds; ++seed) experiment.seeds.push_back(seed);
-    }
+  if (experiment.random) {
+    change_draws(changes, experiment, errors);
+  } else {
+    change_seeds(changes, experiment, errors);
   }
   Expansion(experiment, settings, changes, errors).run();
   if (!errors.empty()) {

@@ -11,6 +11,7 @@
 
 #include "pirouette/base/result.hpp"
 #include "pirouette/config/config.hpp"
+#include "pirouette/config/experiment_draw.hpp"
 
 namespace pirouette {
 
@@ -18,7 +19,17 @@ namespace pirouette {
 struct ExperimentRow {
   std::string label;
   std::string controller;
-  std::string paper;  ///< whose printed figures stand beside it; empty: nobody's
+  std::string paper;                  ///< whose printed figures stand beside it; empty: nobody's
+  std::vector<ExperimentDraw> draws;  ///< of a random experiment, above those of all rows
+};
+
+/// Of an experiment whose trials take the rows in turn and draw parameters, run.seed among them:
+/// trial i is the same however many there are.
+struct RandomPart {
+  std::int64_t trials = 1;
+  std::int64_t seed = 1;                  ///< of the draws
+  std::vector<ExperimentDraw> draws;      ///< in every row
+  std::optional<std::int64_t> max_falls;  ///< acceptance
 };
 
 /// A parameter that takes each of `values` in turn, over every row.
@@ -29,7 +40,7 @@ struct ExperimentAxis {
   bool operator==(const ExperimentAxis&) const = default;
 };
 
-/// One run: a row, a value of each axis, a seed.
+/// One run: a row, a value of each axis, a seed; in a random experiment a row and what was drawn.
 struct ExperimentTrial {
   std::size_t row = 0;
   std::vector<std::size_t> levels;  ///< index into each axis' values
@@ -79,12 +90,17 @@ struct Experiment {
   std::vector<PrintedResult> printed;
   std::vector<std::string> ladder;  ///< labels of rows of which each should better the one before
   std::vector<ExperimentBound> bounds;
+  std::optional<RandomPart> random;  ///< without seeds, axes, printed figures and bounds
+
+  /// Parameters that some trials draw, sorted.
+  std::vector<std::string> random_keys() const;
 };
 
 /// What the command line changes in an experiment.
 struct ExperimentChanges {
-  std::optional<int> seeds;     ///< run seeds 1 to this instead of the file's
-  std::optional<double> turns;  ///< run.turns of every trial
+  std::optional<int> seeds{};                         ///< run seeds 1 to this instead of the file's
+  std::optional<double> turns{};                      ///< run.turns of every trial
+  std::optional<std::int64_t> trials{}, draw_seed{};  ///< of a random experiment
 };
 
 /// The experiment with the configuration of each trial, or everything that is wrong with it at

@@ -1,32 +1,35 @@
 #include "pirouette/config/experiment_reader.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <set>
 #include <utility>
 
+#include "pirouette/config/draw_reader.hpp"
 #include "pirouette/config/suggest.hpp"
-#include "pirouette/config/toml.hpp"
+#include "pirouette/config/table_reader.hpp"
 
 namespace pirouette {
 namespace {
 
-constexpr const char* kText = "a text in quotes";
-
-int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
-
-/// What a list is: the value of one parameter, or values of which any will do.
-enum class Lists { kValues, kAlternatives };
-
-class Reader {
+class Reader : private TableReader {
  public:
   Reader(Experiment& experiment, ExperimentSettings& settings, Errors& errors)
-      : experiment_(experiment), settings_(settings), errors_(errors) {}
+      : TableReader(experiment.file.string(), errors),
+        experiment_(experiment),
+        settings_(settings) {}
 
   void read(const toml::table& table) {
-    allow_keys(table, "",
-               {"title", "source", "note", "robot", "seeds", "ladder", "common", "rows", "axes",
-                "trace", "columns", "paper", "bounds"});
+    const bool random = table.contains("trials") || table.contains("random");
+    if (random) {
+      allow_keys(table, "",
+                 {"title", "note", "robot", "trials", "seed", "max_falls", "common", "random",
+                  "rows", "columns"});
+      read_random(table);
+    } else {
+      allow_keys(table, "",
+                 {"title", "source", "note", "robot", "seeds", "ladder", "common", "rows", "axes",
+                  "trace", "columns", "paper", "bounds"});
+    }
     experiment_.title = text(table, "", "title").value_or(experiment_.name);
     experiment_.source = text(table, "", "source").value_or("");
     experiment_.note = text(table, "", "note").value_or("");
@@ -45,92 +48,15 @@ class Reader {
   }
 
  private:
-  void report(const toml::node& node, const std::string& key, std::string message) {
-    errors_.push_back({experiment_.file.string(), line_of(node), key, std::move(message)});
-  }
-
-  void allow_keys(const toml::table& table, const std::string& prefix,
-                  const std::vector<std::string>& names) {
-    for (const auto& [key, node] : table) {
-      const std::string name(key.str());
-      if (std::find(names.begin(), names.end(), name) != names.end()) continue;
-      const std::optional<std::string> meant = nearest(name, names);
-      report(node, prefix + name,
-             "unknown key; " +
-                 (meant ? "did you mean " + *meant + "?" : "allowed here: " + joined(names)));
+  void read_random(const toml::table& table) {
+    RandomPart& random = experiment_.random.emplace();
+    if (!table.contains("trials")) {
+      report(table, "trials", "missing: how many trials draw from [random]");
     }
-  }
-
-  std::optional<std::string> text(const toml::table& table, const std::string& prefix,
-                                  const char* name) {
-    const toml::node* node = table.get(name);
-    if (node == nullptr) return std::nullopt;
-    if (node->is_string()) return node->as_string()->get();
-    report(*node, prefix + name, "given " + shown(*node) + "; allowed: " + kText);
-    return std::nullopt;
-  }
-
-  std::string needed_text(const toml::table& table, const std::string& prefix, const char* name) {
-    if (table.get(name) == nullptr) report(table, prefix + name, std::string("missing: ") + kText);
-    return text(table, prefix, name).value_or("");
-  }
-
-  std::optional<double> number(const toml::node& node, const std::string& key) {
-    const std::optional<double> value = node.value<double>();
-    if (!node.is_boolean() && value && std::isfinite(*value)) return value;
-    report(node, key, "given " + shown(node) + "; allowed: a finite number");
-    return std::nullopt;
-  }
-
-  /// Calls `visit` for each table of the array of tables `name`.
-  template <class Visit>
-  void for_each(const toml::table& table, const char* name, Visit&& visit) {
-    const toml::node* node = table.get(name);
-    if (node == nullptr) return;
-    const toml::array* list = node->as_array();
-    if (list == nullptr) {
-      report(*node, name, std::string("allowed: tables, each headed [[") + name + "]]");
-      return;
-    }
-    for (const toml::node& element : *list) {
-      if (const toml::table* entry = element.as_table()) {
-        visit(*entry);
-      } else {
-        report(element, name, "given " + shown(element) + "; allowed: a table");
-      }
-    }
-  }
-
-  /// The parameters below the table `name` with dotted keys, in the order of the file.
-  std::vector<ExperimentSetting> settings(const toml::table& table, const std::string& prefix,
-                                          const char* name, Lists lists = Lists::kValues) {
-    std::vector<ExperimentSetting> out;
-    const toml::node* node = table.get(name);
-    if (node == nullptr) return out;
-    if (const toml::table* values = node->as_table()) {
-      flatten(*values, "", lists, out);
-    } else {
-      report(*node, prefix + name, "given " + shown(*node) + "; allowed: a table of parameters");
-    }
-    std::stable_sort(
-        out.begin(), out.end(),
-        [](const ExperimentSetting& a, const ExperimentSetting& b) { return a.line < b.line; });
-    return out;
-  }
-
-  static void flatten(const toml::table& table, const std::string& prefix, Lists lists,
-                      std::vector<ExperimentSetting>& out) {
-    for (const auto& [key, node] : table) {
-      const std::string path = prefix + std::string(key.str());
-      const toml::array* list = node.as_array();
-      if (const toml::table* below = node.as_table()) {
-        flatten(*below, path + ".", lists, out);
-      } else if (list != nullptr && lists == Lists::kAlternatives) {
-        for (const toml::node& value : *list) out.push_back({path, shown(value), line_of(value)});
-      } else {
-        out.push_back({path, shown(node), line_of(node)});
-      }
-    }
+    random.trials = count(table, "trials", 1, kMaxTrials).value_or(1);
+    random.seed = count(table, "seed", 0, kMaxDrawSeed).value_or(random.seed);
+    random.max_falls = count(table, "max_falls", 0, kMaxTrials);
+    random.draws = read_draws(*this, table, "");
   }
 
   void read_seeds(const toml::table& table) {
@@ -153,11 +79,16 @@ class Reader {
   }
 
   void read_row(const toml::table& table) {
-    allow_keys(table, "rows.", {"label", "controller", "paper", "set", "max"});
+    if (experiment_.random) {
+      allow_keys(table, "rows.", {"label", "controller", "set", "random"});
+    } else {
+      allow_keys(table, "rows.", {"label", "controller", "paper", "set", "max"});
+    }
     ExperimentRow row;
     row.label = needed_text(table, "rows.", "label");
     row.controller = needed_text(table, "rows.", "controller");
     row.paper = text(table, "rows.", "paper").value_or("");
+    row.draws = read_draws(*this, table, "rows.");
     const bool taken = std::any_of(experiment_.rows.begin(), experiment_.rows.end(),
                                    [&](const ExperimentRow& r) { return r.label == row.label; });
     if (taken) report(table, "rows.label", in_quotes(row.label) + " stands there twice");
@@ -176,7 +107,7 @@ class Reader {
       return;
     }
     std::map<std::string, double> limits;
-    read_numbers(*node->as_table(), "", limits);
+    numbers(*node->as_table(), "", limits);
     for (const auto& [metric, limit] : limits) {
       ExperimentBound bound;
       bound.row = label;
@@ -226,7 +157,7 @@ class Reader {
       report(table, "paper.metrics", "missing: a table of printed values");
       return;
     }
-    read_numbers(*metrics->as_table(), "", printed.metrics);
+    numbers(*metrics->as_table(), "", printed.metrics);
     experiment_.printed.push_back(std::move(printed));
   }
 
@@ -253,18 +184,6 @@ class Reader {
         continue;
       }
       report(value, "paper.among", "given " + shown(value) + "; allowed: " + joined(axis->values));
-    }
-  }
-
-  void read_numbers(const toml::table& table, const std::string& prefix,
-                    std::map<std::string, double>& out) {
-    for (const auto& [key, node] : table) {
-      const std::string path = prefix + std::string(key.str());
-      if (const toml::table* below = node.as_table()) {
-        read_numbers(*below, path + ".", out);
-      } else if (const std::optional<double> value = number(node, path)) {
-        out[path] = *value;
-      }
     }
   }
 
@@ -312,15 +231,9 @@ class Reader {
 
   Experiment& experiment_;
   ExperimentSettings& settings_;
-  Errors& errors_;
 };
 
 }  // namespace
-
-std::string without_quotes(const std::string& literal) {
-  const bool quoted = literal.size() > 1 && literal.front() == '"';
-  return quoted ? literal.substr(1, literal.size() - 2) : literal;
-}
 
 void read_experiment(const toml::table& table, Experiment& experiment, ExperimentSettings& settings,
                      Errors& errors) {

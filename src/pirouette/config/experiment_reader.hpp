@@ -28,9 +28,6 @@ struct ExperimentSettings {
   std::vector<ExperimentSetting> trace;  ///< a key that is there twice: either value will do
 };
 
-/// The value of a TOML literal as a user names it.
-std::string without_quotes(const std::string& literal);
-
 /// Fills `experiment`, whose file and name are set, but for its trials.
 void read_experiment(const toml::table& table, Experiment& experiment, ExperimentSettings& settings,
                      Errors& errors);

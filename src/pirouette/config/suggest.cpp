@@ -47,6 +47,11 @@ std::string joined(const std::vector<std::string>& names) {
 
 std::string in_quotes(std::string_view text) { return "\"" + std::string(text) + "\""; }
 
+std::string without_quotes(const std::string& literal) {
+  const bool quoted = literal.size() > 1 && literal.front() == '"';
+  return quoted ? literal.substr(1, literal.size() - 2) : literal;
+}
+
 std::string unknown_name(std::string_view given, const std::vector<std::string>& known) {
   const std::optional<std::string> meant = nearest(given, known);
   return "given " + in_quotes(given) + "; allowed: " + joined(known) +

@@ -18,6 +18,9 @@ std::string joined(const std::vector<std::string>& names);
 
 std::string in_quotes(std::string_view text);
 
+/// The value of a TOML literal as a user names it.
+std::string without_quotes(const std::string& literal);
+
 /// What was given, which names are allowed and which was probably meant.
 std::string unknown_name(std::string_view given, const std::vector<std::string>& known);
 

@@ -35,6 +35,18 @@ std::optional<double> maximum(std::span<const double> x) {
   return *std::max_element(x.begin(), x.end());
 }
 
+std::optional<Interval> wilson_interval(std::size_t count, std::size_t trials) {
+  if (trials == 0) return std::nullopt;
+  constexpr double kNormal95 = 1.959963984540054;  // 97.5 % quantile of the normal distribution
+  const auto n = static_cast<double>(trials);
+  const double share = static_cast<double>(count) / n;
+  const double pull = square(kNormal95) / n;
+  const double centre = (share + pull / 2.0) / (1.0 + pull);
+  const double half =
+      kNormal95 / (1.0 + pull) * std::sqrt(share * (1.0 - share) / n + pull / (4.0 * n));
+  return Interval{std::max(0.0, centre - half), std::min(1.0, centre + half)};
+}
+
 Vec2 centroid(std::span<const Vec2> points) {
   Vec2 sum = Vec2::Zero();
   for (const Vec2& p : points) sum += p;

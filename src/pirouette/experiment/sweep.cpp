@@ -244,8 +244,11 @@ Errors check_sweep(const Experiment& experiment) {
     for (const auto& entry : printed.metrics) check_metric(entry.first);
   }
   std::set<std::string> texts;
-  for (const ExperimentTrial& trial : experiment.trials) {
-    if (trial.seed != experiment.seeds.front()) continue;
+  for (std::size_t i = 0; i < experiment.trials.size(); ++i) {
+    const ExperimentTrial& trial = experiment.trials[i];
+    const bool first =
+        experiment.random ? i < experiment.rows.size() : trial.seed == experiment.seeds.front();
+    if (!first) continue;
     for (Error error : check_trial(trial.config)) {
       if (error.file.empty()) error.file = file;
       if (texts.insert(error.to_string()).second) errors.push_back(std::move(error));

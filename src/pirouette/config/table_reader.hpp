@@ -1,0 +1,73 @@
+// Reads tables of an experiment file and collects what is wrong with them; for this folder only.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "pirouette/config/experiment_reader.hpp"
+#include "pirouette/config/toml_node.hpp"
+
+namespace pirouette {
+
+/// What a list is: the value of one parameter, or values of which any will do.
+enum class Lists { kValues, kAlternatives };
+
+int line_of(const toml::node& node);
+
+/// Keys in errors are `prefix` and the name in the table.
+class TableReader {
+ public:
+  TableReader(std::string file, Errors& errors) : file_(std::move(file)), errors_(errors) {}
+
+  void report(const toml::node& node, const std::string& key, std::string message) const;
+
+  void allow_keys(const toml::table& table, const std::string& prefix,
+                  const std::vector<std::string>& names) const;
+
+  /// Absent when it is not there or, which is reported, not a text.
+  std::optional<std::string> text(const toml::table& table, const std::string& prefix,
+                                  const char* name) const;
+  /// Reported when it is not there too; empty then.
+  std::string needed_text(const toml::table& table, const std::string& prefix,
+                          const char* name) const;
+  std::optional<double> number(const toml::node& node, const std::string& key) const;
+  /// A whole number in [min, max]; absent when it is not there or, which is reported, another.
+  std::optional<std::int64_t> count(const toml::table& table, const char* name, std::int64_t min,
+                                    std::int64_t max) const;
+
+  /// The numbers below `table` with dotted keys.
+  void numbers(const toml::table& table, const std::string& prefix,
+               std::map<std::string, double>& out) const;
+  /// The parameters below the table `name` with dotted keys, in the order of the file.
+  std::vector<ExperimentSetting> settings(const toml::table& table, const std::string& prefix,
+                                          const char* name, Lists lists = Lists::kValues) const;
+
+  /// Calls `visit` for each table of the array of tables `name`.
+  template <class Visit>
+  void for_each(const toml::table& table, const char* name, Visit&& visit) const {
+    const toml::node* node = table.get(name);
+    if (node == nullptr) return;
+    const toml::array* list = node->as_array();
+    if (list == nullptr) {
+      report(*node, name, std::string("allowed: tables, each headed [[") + name + "]]");
+      return;
+    }
+    for (const toml::node& element : *list) {
+      if (const toml::table* entry = element.as_table()) {
+        visit(*entry);
+      } else {
+        report(element, name, "given " + shown(element) + "; allowed: a table");
+      }
+    }
+  }
+
+ private:
+  std::string file_;
+  Errors& errors_;
+};
+
+}  // namespace pirouette
