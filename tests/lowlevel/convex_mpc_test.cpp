@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <numeric>
 #include <random>
 
@@ -394,6 +395,35 @@ TEST_F(StandingMpc, FailsWithZerosWhenNoForceIsAllowed) {
   const ContactForces forces = mpc.update(disturbed());
   EXPECT_EQ(forces.status, SolveStatus::kFailed);
   for (const Vec3& f_W : forces.f_W) EXPECT_EQ(f_W, Vec3::Zero());
+}
+
+TEST_F(StandingMpc, FailsWithZerosAtTheIterationCap) {
+  MpcInput in = disturbed();
+  in.now.v_WG_W = {1.0, -0.8, 0.0};  // many forces at the edge of friction
+  const ContactForces free = solve(in);
+  ASSERT_EQ(free.status, SolveStatus::kConstrained);
+  ASSERT_GT(free.iterations, 4);
+  config_.max_iterations = 4;
+  ConvexMpc capped(config_, kMass, kInertia);
+  const ContactForces forces = capped.update(in);
+  EXPECT_EQ(forces.status, SolveStatus::kFailed);
+  EXPECT_LE(forces.iterations, 4);
+  for (const Vec3& f_W : forces.f_W) EXPECT_EQ(f_W, Vec3::Zero());
+}
+
+TEST_F(StandingMpc, FailsWithZerosWhenAnInputIsNotFiniteAndRecovers) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  for (const int spoilt : {0, 1, 2, 3}) {
+    MpcInput in = disturbed();
+    if (spoilt == 0) in.now.rpy.x() = kNan;
+    if (spoilt == 1) in.steps[3].p_WC[Leg::kFL].y() = kNan;
+    if (spoilt == 2) in.steps[5].rpy_mid.yaw = kNan;
+    if (spoilt == 3) in.n_W.z() = kNan;
+    const ContactForces forces = solve(in);
+    EXPECT_EQ(forces.status, SolveStatus::kFailed) << spoilt;
+    for (const Vec3& f_W : forces.f_W) EXPECT_EQ(f_W, Vec3::Zero()) << spoilt;
+    EXPECT_EQ(solve(disturbed()).status, SolveStatus::kUnconstrained) << spoilt;
+  }
 }
 
 }  // namespace
