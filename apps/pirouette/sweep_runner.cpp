@@ -121,10 +121,17 @@ void SweepRunner::add_shard_options(CLI::App& command) {
                       "Run every N-th trial from the I-th on, beside the other shards; no tables")
           ->type_name("I/N")
           ->excludes("--fresh");
+  CLI::Option* merge =
+      command
+          .add_flag("--merge", merge_,
+                    "Run nothing: write the tables from what the shards have left in the folder")
+          ->excludes(shard)
+          ->excludes("--fresh");
   command
-      .add_flag("--merge", merge_,
-                "Run nothing: write the tables from what the shards have left in the folder")
+      .add_flag("--dry-run", dry_run_,
+                "Run nothing: check the file, tell how many of its trials are finished")
       ->excludes(shard)
+      ->excludes(merge)
       ->excludes("--fresh");
 }
 
@@ -169,7 +176,17 @@ Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std
   return run_sweep(experiment, options);
 }
 
+int SweepRunner::survey(const Experiment& experiment, const std::string& folder) const {
+  const Errors errors = check_sweep(experiment);
+  if (!errors.empty()) return report(errors);
+  const SweepProgress progress = survey_sweep(experiment, folder);
+  std::cout << progress.done << " of " << progress.total << " trials are finished in " << folder
+            << "\n";
+  return kDone;
+}
+
 int SweepRunner::run(const Experiment& experiment, const std::string& folder, bool fresh) const {
+  if (dry_run_) return survey(experiment, folder);
   watch_interrupts();
   const Result<SweepResult> result = results(experiment, folder, fresh);
   if (!result) return report(result.errors());

@@ -19,7 +19,8 @@ class SweepRunner {
   void add_seed_options(CLI::App& command);
   /// --trials and --seed.
   void add_draw_options(CLI::App& command);
-  /// --shard and --merge, for a folder that belongs to one experiment. After add_options.
+  /// --shard, --merge and --dry-run, for a folder that belongs to one experiment. After
+  /// add_options.
   void add_shard_options(CLI::App& command);
 
   /// --turns, --seeds, --trials and --seed.
@@ -39,6 +40,8 @@ class SweepRunner {
   std::optional<Shard> shard() const;
   Result<SweepResult> results(const Experiment& experiment, const std::string& folder,
                               bool fresh) const;
+  /// Prints how much of the experiment `folder` holds.
+  int survey(const Experiment& experiment, const std::string& folder) const;
   int write_tables(const Experiment& experiment, const SweepResult& result,
                    const std::string& folder) const;
 
@@ -48,6 +51,7 @@ class SweepRunner {
   bool fresh_ = false;
   bool resume_ = false;  ///< what happens anyway; --fresh excludes it
   bool merge_ = false;
+  bool dry_run_ = false;
   bool own_folder_ = false;  ///< it belongs to one experiment
 };
 

@@ -96,6 +96,36 @@ TEST_F(ExperimentFiles, ExpandRowsThenAxesThenSeeds) {
   EXPECT_EQ(experiment.trials[8].config.controller, "pirouette");
 }
 
+TEST_F(ExperimentFiles, TakeRobotsAsTheFirstAxis) {
+  const fs::path copy = folder_ / "other.xml";
+  fs::copy(fs::path(PIROUETTE_SOURCE_DIR) / "robots/mini_cheetah/mini_cheetah.xml", copy);
+  const Result<Experiment> loaded =
+      load("robots = [\"mini_cheetah\", \"" + copy.string() + "\"]\n" + kGood);
+  ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
+  const Experiment& experiment = loaded.value();
+  ASSERT_EQ(experiment.axes.size(), 3u);
+  EXPECT_EQ(experiment.axes.front().key, "robot");
+  ASSERT_EQ(experiment.trials.size(), 2u * 16u);
+  for (std::size_t i = 0; i < experiment.trials.size(); ++i) {
+    const bool first = (i / 8) % 2 == 0;  // rows, then robots, then 2 x 2 axis values x 2 seeds
+    EXPECT_EQ(experiment.trials[i].config.robot, first ? "mini_cheetah" : copy.string());
+  }
+}
+
+TEST_F(ExperimentFiles, NameWhatIsWrongWithRobots) {
+  const std::string title = "title = \"A small experiment\"";
+  EXPECT_EQ(errors_of(title, "robot = \"mini_cheetah\"\nrobots = [\"mini_cheetah\"]"),
+            "2: robots: given beside robot; allowed: one of them");
+  EXPECT_EQ(errors_of(title, "robots = [1]"),
+            "1: robots: given [1]; allowed: a list of names under robots/ or MJCF files");
+  EXPECT_EQ(errors_of(title, "robots = [\"mini_cheetah\", \"mini_chetah\"]").substr(0, 31),
+            "1: robot: given \"mini_chetah\"; ");
+  EXPECT_EQ(errors_of("key = \"profile\"\nvalues = [\"nominal\", \"realistic\"]",
+                      "key = \"robot\"\nvalues = [\"mini_cheetah\"]")
+                .substr(0, 51),
+            "19: axes.key: robots are given by the list `robots`");
+}
+
 TEST_F(ExperimentFiles, RowsOverrideWhatIsCommonAndAxesOverrideRows) {
   const Result<Experiment> loaded =
       load(good_but("gait.period = 0.5", "gait.period = 0.5\nplant.torsional_friction = 0.1"));

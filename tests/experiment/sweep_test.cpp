@@ -177,6 +177,32 @@ TEST_F(Sweeps, GiveTheSameTableFromShardsThatRunAtTheSameTime) {
   EXPECT_EQ(whole, tables(experiment, rest));
 }
 
+TEST_F(Sweeps, RunEveryRobot) {
+  const fs::path copy = folder_ / "copy.xml";
+  fs::copy(fs::path(PIROUETTE_SOURCE_DIR) / "robots/mini_cheetah/mini_cheetah.xml", copy);
+  const Experiment experiment = load("robots = [\"mini_cheetah\", \"" + copy.string() + "\"]\n" +
+                                     tiny_but("seeds = [1, 2]", "seeds = [1]"));
+  const Result<SweepResult> result = run_sweep(experiment, options("run", 2));
+  ASSERT_TRUE(result) << result.errors().front().to_string();
+  ASSERT_EQ(result.value().values.size(), 8u);
+  // Rows, robots, frictions: the copy is another trial with the same numbers.
+  EXPECT_NE(result.value().keys[0], result.value().keys[2]);
+  EXPECT_EQ(result.value().values[0], result.value().values[2]);
+  const std::string table = trial_table(experiment, result.value());
+  EXPECT_TRUE(table.starts_with("trial,key,row,robot,plant.friction,seed,")) << table;
+}
+
+TEST_F(Sweeps, TellHowMuchIsFinished) {
+  const Experiment experiment = load();
+  SweepOptions part = options("run", 2);
+  part.shard = Shard{1, 3};
+  EXPECT_EQ(survey_sweep(experiment, folder_ / "run").done, 0u);
+  ASSERT_TRUE(run_sweep(experiment, part));
+  const SweepProgress progress = survey_sweep(experiment, folder_ / "run");
+  EXPECT_EQ(progress.done, 3u);
+  EXPECT_EQ(progress.total, 8u);
+}
+
 TEST_F(Sweeps, TellWhichShardsAreMissingFromAMerge) {
   const Experiment experiment = load();
   SweepOptions first = options("run", 2);

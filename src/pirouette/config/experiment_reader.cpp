@@ -27,8 +27,8 @@ class Reader : private TableReader {
       read_random(table);
     } else {
       allow_keys(table, "",
-                 {"title", "source", "note", "robot", "seeds", "ladder", "common", "rows", "axes",
-                  "trace", "columns", "paper", "bounds"});
+                 {"title", "source", "note", "robot", "robots", "seeds", "ladder", "common", "rows",
+                  "axes", "trace", "columns", "paper", "bounds"});
     }
     experiment_.title = text(table, "", "title").value_or(experiment_.name);
     experiment_.source = text(table, "", "source").value_or("");
@@ -38,6 +38,7 @@ class Reader : private TableReader {
     settings_.common = settings(table, "", "common");
     settings_.trace = settings(table, "", "trace", Lists::kAlternatives);
     read_seeds(table);
+    read_robots(table);
     for_each(table, "rows", [&](const toml::table& row) { read_row(row); });
     for_each(table, "axes", [&](const toml::table& axis) { read_axis(axis); });
     for_each(table, "columns", [&](const toml::table& column) { read_column(column); });
@@ -76,6 +77,24 @@ class Reader : private TableReader {
       return;
     }
     experiment_.seeds = seeds;
+  }
+
+  /// The first axis, which varies slowest.
+  void read_robots(const toml::table& table) {
+    const toml::node* node = table.get("robots");
+    if (node == nullptr) return;
+    if (table.contains("robot")) {
+      report(*node, "robots", "given beside robot; allowed: one of them");
+      return;
+    }
+    const toml::array* list = node->as_array();
+    const bool good = list != nullptr && !list->empty() && list->is_homogeneous<std::string>();
+    if (!good) {
+      report(*node, "robots",
+             "given " + shown(*node) + "; allowed: a list of names under robots/ or MJCF files");
+      return;
+    }
+    add_axis("robot", *list);
   }
 
   void read_row(const toml::table& table) {
@@ -119,18 +138,23 @@ class Reader : private TableReader {
 
   void read_axis(const toml::table& table) {
     allow_keys(table, "axes.", {"key", "values"});
-    ExperimentAxis axis;
-    axis.key = needed_text(table, "axes.", "key");
-    if (axis.key == "run.seed") report(table, "axes.key", "seeds are given by the list `seeds`");
+    const std::string key = needed_text(table, "axes.", "key");
+    if (key == "run.seed") report(table, "axes.key", "seeds are given by the list `seeds`");
+    if (key == "robot") report(table, "axes.key", "robots are given by the list `robots`");
     const toml::node* node = table.get("values");
     const toml::array* list = node != nullptr ? node->as_array() : nullptr;
     if (list == nullptr || list->empty()) {
       report(node != nullptr ? *node : table, "axes.values", "allowed: a list of values");
       return;
     }
+    add_axis(key, *list);
+  }
+
+  void add_axis(const std::string& key, const toml::array& values) {
+    ExperimentAxis axis{key, {}};
     std::vector<ExperimentSetting> settings;
-    for (const toml::node& value : *list) {
-      settings.push_back({axis.key, shown(value), line_of(value)});
+    for (const toml::node& value : values) {
+      settings.push_back({key, shown(value), line_of(value)});
       axis.values.push_back(without_quotes(settings.back().value));
     }
     experiment_.axes.push_back(std::move(axis));

@@ -281,6 +281,18 @@ Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& 
   return result;
 }
 
+SweepProgress survey_sweep(const Experiment& experiment, const fs::path& folder) {
+  const ResultsLog log = ResultsLog::read(folder);
+  std::vector<std::string> keys;
+  SweepProgress progress;
+  for (const Job& job : distinct_jobs(experiment, keys)) {
+    ++progress.total;
+    progress.done += is_finished(job, log, folder) ? 1 : 0;
+  }
+  progress.resumed = progress.done;
+  return progress;
+}
+
 Result<SweepResult> merge_sweep(const Experiment& experiment, const fs::path& folder) {
   const Errors errors = check_sweep(experiment);
   if (!errors.empty()) return errors;

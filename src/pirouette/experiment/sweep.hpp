@@ -51,6 +51,9 @@ Errors check_sweep(const Experiment& experiment);
 /// depend on `jobs`, nor on how often the sweep was interrupted, nor on how it was sharded.
 Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& options);
 
+/// How much of the experiment `folder` holds.
+SweepProgress survey_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+
 /// The result from what `folder` holds, without running anything; the error when trials are
 /// missing says how many, and of which shards.
 Result<SweepResult> merge_sweep(const Experiment& experiment, const std::filesystem::path& folder);
