@@ -66,12 +66,19 @@ void run_module(const std::string& verb, char** arguments) {
   ::execv(python.c_str(), line.data());
 }
 
+std::string own_path() {
+  std::error_code error;
+  const std::string path = std::filesystem::read_symlink("/proc/self/exe", error).string();
+  return error ? "pirouette" : path;
+}
+
 /// Becomes the program `pirouette-<verb>`; returns only when there is none.
 int run_external(const CLI::App& app, char** arguments) {
-  constexpr std::array kPythonVerbs = {"report", "view", "export"};
+  constexpr std::array kPythonVerbs = {"report", "view", "export", "cluster"};
   const std::string verb = arguments[0];
   const std::string program = "pirouette-" + verb;
   if (verb.find('/') == verb.npos) {
+    ::setenv("PIROUETTE", own_path().c_str(), 0);  // for those that run it in turn
     ::execvp(program.c_str(), arguments);
     run_module(verb, arguments);
   }

@@ -11,6 +11,7 @@
 #include "pirouette/experiment/run_folder.hpp"
 #include "pirouette/experiment/trial.hpp"
 #include "progress_bar.hpp"
+#include "realtime.hpp"
 #include "summary.hpp"
 
 namespace pirouette::app {
@@ -46,12 +47,14 @@ std::string shown_path(const std::filesystem::path& path) {
   return relative.starts_with("..") ? path.string() : relative;
 }
 
-Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_progress) {
+Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_progress,
+                             RealTimePacer* pacer) {
   const bool about_a_point = config.run.path.empty() && config.run.velocity == std::array{0.0, 0.0};
   std::optional<ProgressBar> bar;
   if (show_progress) bar.emplace(about_a_point);
   TrialOptions options;
   options.trace = &trace;
+  if (pacer != nullptr) options.before_tick = [pacer](std::int64_t tick) { pacer->wait(tick); };
   options.progress = [&](const TrialProgress& progress) {
     if (bar) bar->update(progress);
     return interrupt_signal() == 0;
@@ -73,6 +76,9 @@ RunCommand::RunCommand(CLI::App& app, Kind kind, std::string command_line)
   command_->add_option("--out", out_, "Run folder; an earlier run there is replaced [runs/...]")
       ->type_name("DIR");
   command_->add_flag("--json", json_, "Print metrics.json instead of the table");
+  command_->add_flag("--realtime", realtime_,
+                     "Run against the wall clock, under SCHED_FIFO with locked memory where that "
+                     "is permitted, and tell how many deadlines were missed");
   command_->add_flag("--quiet", quiet_, "Print no progress and no table");
 }
 
@@ -107,12 +113,17 @@ int RunCommand::run() const {
   if (!trace) return report(trace.errors());
 
   watch_interrupts();
-  const Result<TrialResult> trial = simulate(config, trace.value(), !quiet_);
+  RealTimePacer pacer(1.0 / config.control.rate);
+  const std::vector<std::string> refused =
+      realtime_ ? request_real_time() : std::vector<std::string>{};
+  const Result<TrialResult> trial =
+      simulate(config, trace.value(), !quiet_, realtime_ ? &pacer : nullptr);
   if (!trial) return report(config_options_.in_typed_words(trial.errors()));
   if (trial.value().interrupted) {
     std::cerr << "interrupted: no run folder was written\n";
     return kSignal + interrupt_signal();
   }
+  if (realtime_) std::cerr << pacer.summary(refused) << "\n";
   const Metrics& metrics = trial.value().metrics;
   if (const auto error = save(folder.value(), trace.value(), config, metrics, command_line_)) {
     return report({*error});

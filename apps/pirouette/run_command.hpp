@@ -29,6 +29,7 @@ class RunCommand {
   std::optional<std::string> out_;
   bool json_ = false;
   bool quiet_ = false;
+  bool realtime_ = false;
 };
 
 }  // namespace pirouette::app

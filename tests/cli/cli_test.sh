@@ -227,6 +227,15 @@ cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy || fail 'run.toml give
 grep -q 'Run folder: again' stdout || fail 'the table does not name the run folder'
 cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy && fail 'another seed, the same trace'
 
+# Against the wall clock: 3 s of simulation take 3 s and give the same trace.
+timed='--turns 0.05 --set run.settle_time=0.2 --set gait.stand_time=2'
+"$program" spin $timed --out simulated --quiet > stdout 2> stderr || fail 'a timed spin'
+SECONDS=0
+"$program" spin $timed --out paced --realtime --quiet > stdout 2> stderr || fail 'a spin in real time'
+[ $SECONDS -ge 2 ] || fail 'not against the wall clock'
+grep -q '^Real time: [0-9]* of [0-9]* deadlines missed' stderr || fail 'no missed deadlines told'
+cmp -s simulated/trace.npy paced/trace.npy || fail 'another trace in real time'
+
 # A turn along a path, and the same again from what it left.
 "$program" turn --path square --laps 0.01 --set run.settle_time=0.2 > stdout 2> stderr ||
   fail 'a short turn'
@@ -252,6 +261,9 @@ cmp -s swept/table.csv first.csv && cmp -s stdout first.md || fail 'another tabl
 [ "$(ls swept | xargs)" = \
   'experiment.csv experiment.json experiment.md results.jsonl table.csv traces' ] ||
   fail 'files of a sweep'
+
+[ "$("$program" sweep sandbox/experiment.toml --seeds 3 --out swept --dry-run)" = \
+  '2 of 3 trials are finished in swept' ] || fail 'a dry run'
 
 # The same in two parts.
 "$program" sweep sandbox/experiment.toml --seeds 2 --out parts --shard 2/2 > stdout 2> stderr ||

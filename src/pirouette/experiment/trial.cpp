@@ -196,6 +196,7 @@ class Trial {
   TrialResult run() {
     start_ = Clock::now();
     for (tick_ = 0; tick_ <= schedule_.end; ++tick_) {
+      if (options_.before_tick) options_.before_tick(tick_);
       const PlantTruth& truth = plant_.truth();
       if (has_fallen(truth) || gave_up()) {
         fall_time_ = schedule_.seconds(tick_);

@@ -1,6 +1,7 @@
 // One simulated run: plant and controller in a closed loop, watched by the truth.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 
 #include "pirouette/base/result.hpp"
@@ -20,6 +21,8 @@ struct TrialProgress {
 };
 
 struct TrialOptions {
+  /// Called with the number of each control tick before it; may wait. May be empty.
+  std::function<void(std::int64_t)> before_tick;
   /// Called about every 0.1 s of simulated time; false ends the trial. May be empty.
   std::function<bool(const TrialProgress&)> progress;
   /// Takes run.trace_rate rows a second; nullptr: no trace. The caller finishes it.
