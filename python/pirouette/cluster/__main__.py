@@ -1,0 +1,5 @@
+import sys
+
+from pirouette.cluster import main
+
+sys.exit(main())
