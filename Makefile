@@ -61,15 +61,28 @@ view: python  ## the running simulation in a browser; ARGS='--terrain slope:10 -
 	@$(PYTHON) -m pirouette.view $(ARGS)
 
 .PHONY: report
-report: setup  ## HTML page about a run, with plots and a 3D replay; RUN=FOLDER [the latest of runs/]
+report: setup  ## HTML page about runs, with plots and a 3D replay; RUN='FOLDER...' [the latest of runs/]
 	@run='$(RUN)'; run=$${run:-$$(ls -td runs/*/ 2>/dev/null | head -1)}; \
 	test -n "$$run" || { echo 'report: no run in runs/; make spin first'; exit 2; }; \
 	$(PYTHON) -m pirouette.report $$run $(ARGS)
 
+IMAGES := build/images
+RENDERER := libegl1 libgl1-mesa-dri
+
 .PHONY: images
-images: build  ## docs/images/spin.png, the picture of the README
-	@$(PIROUETTE) spin --quiet --out build/images/spin
-	@$(PYTHON) -m pirouette.picture build/images/spin docs/images/spin.png
+images: build  ## the pictures of the README, docs/images/*.png, by `make report`
+	@bash scripts/system_packages.sh $(RENDERER)
+	@for controller in pirouette mit; do \
+	  $(PIROUETTE) spin --controller $$controller --quiet --out $(IMAGES)/flat/$$controller || exit; \
+	done
+	@for controller in pirouette asc; do \
+	  $(PIROUETTE) spin --controller $$controller --terrain stairs:0.03x0.20 --rate 1 --turns 10 \
+	    --quiet --out $(IMAGES)/stairs/$$controller || exit; \
+	done
+	@$(MAKE) --no-print-directory report RUN='$(IMAGES)/flat/pirouette $(IMAGES)/flat/mit' \
+	  ARGS='--picture docs/images/spin.png'
+	@$(MAKE) --no-print-directory report RUN='$(IMAGES)/stairs/pirouette $(IMAGES)/stairs/asc' \
+	  ARGS='--picture docs/images/stairs.png'
 
 .PHONY: reproduce
 reproduce: build  ## the paper's figures: tables and plots in reports/; what is finished there is kept
@@ -84,7 +97,7 @@ test: configure .venv/test.stamp  ## every test; wrong formatting and warnings f
 
 .PHONY: test-python
 test-python: build python .venv/test.stamp  ## tests of the Python package, some in a headless Chromium
-	@bash scripts/system_packages.sh chromium chromium-driver
+	@bash scripts/system_packages.sh chromium chromium-driver $(RENDERER)
 	@$(PYTHON) -m pytest --quiet $(ARGS)
 
 .venv/test.stamp: requirements-test.txt | .venv/setup.stamp

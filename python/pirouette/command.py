@@ -9,7 +9,7 @@ from pathlib import Path
 from pirouette.errors import NOT_BUILT, Error
 from pirouette.run_folder import RunError
 
-DONE, BAD_USAGE = 0, 2  # exit codes, as those of the C++ program
+DONE, BAD_USAGE, INTERRUPTED = 0, 2, 130  # exit codes, as those of the C++ program
 
 
 def run(body: Callable[[], None]) -> int:
@@ -30,6 +30,8 @@ def run(body: Callable[[], None]) -> int:
     except OSError as error:
         print(f"error: {error.filename or 'file'}: {error.strerror}", file=sys.stderr)
         return BAD_USAGE
+    except KeyboardInterrupt:
+        return INTERRUPTED
     return DONE
 
 

@@ -1,81 +1,96 @@
-"""Picture of a run: the robot in its middle, and the path of its centre of mass.
-
-    python -m pirouette.picture RUN_FOLDER OUT.png
+"""Picture of runs for a README or slides: the robot of the first, and how far it strayed in each.
 
 Renders without a display with MuJoCo (set MUJOCO_GL to egl or osmesa).
 """
 
-import argparse
-import sys
 from pathlib import Path
 
-from pirouette.stage import options, stage  # isort: skip - chooses the renderer for mujoco
+from pirouette.stage import add_forces, add_line, options, renderer, stage  # isort: skip - before mujoco
 
-import matplotlib
 import mujoco
 import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
-from pirouette import command
+from pirouette import style
 from pirouette.robot import Poser, robot_file
-from pirouette.run_folder import Run, load
+from pirouette.run_folder import Run
 from pirouette.signals import MM
 
-matplotlib.use("Agg")
-
-import matplotlib.pyplot as plt  # noqa: E402
-
-SIZE = (1280, 960)  # pixels
+SIZE = (1280, 1120)  # pixels
+PATH_POINTS = 400
+ABOVE_GROUND = 0.004  # m, at which the path is drawn
+DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 
 
 def render(run: Run) -> np.ndarray:
-    """The robot in the middle of the run, shape (height, width, 3)."""
+    """The robot in the middle of the run, its contact forces, and its path if it went anywhere;
+    shape (height, width, 3)."""
+    com = run.trace["true_com_position"]
     row = run.trace[len(run.trace) // 2]
-    poser = Poser(stage(robot_file(run), run.ground, row["true_com_position"], SIZE, samples=4))
+    poser = Poser(stage(robot_file(run), run.ground, com, SIZE, samples=8, pitch=0.01))
     camera = mujoco.MjvCamera()
     camera.lookat[:] = row["true_com_position"] - [0.0, 0.0, 0.1]
-    camera.distance, camera.azimuth, camera.elevation = 1.05, 130, -24
+    camera.distance, camera.azimuth, camera.elevation = 1.0, 35, -24
     data = poser.set(row)
     mujoco.mj_camlight(poser.model, data)
-    with mujoco.Renderer(poser.model, SIZE[1], SIZE[0]) as renderer:
-        renderer.update_scene(data, camera, options())
-        return renderer.render()
+    with renderer(poser.model, SIZE) as painter:
+        painter.update_scene(data, camera, options())
+        if run.has("true_foot_force", "true_foot_position"):
+            add_forces(painter.scene, row)
+        if not run.spins:
+            path = com[:: max(1, len(com) // PATH_POINTS)].copy()
+            path[:, 2] = run.ground.height(path[:, 0], path[:, 1]) + ABOVE_GROUND
+            add_line(painter.scene, path)
+        return painter.render()
 
 
-def draw(run: Run, out: Path) -> None:
-    context, metrics = run.context, run.metrics
-    com = MM * (run.record["true_com_position"][:, :2] - run.point)
-
-    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.6), width_ratios=[1.25, 1.0])
-    left.imshow(render(run))
-    left.axis("off")
-    right.plot(com[:, 0], com[:, 1], lw=0.7, color="#1f4e79", label="centre of mass")
-    right.plot(0, 0, "+", color="#b3400f", ms=12, mew=2, label="commanded point")
-    reach = max(5.0, 1.1 * np.abs(com).max())
-    right.set(xlim=(-reach, reach), ylim=(-reach, reach), xlabel="x, mm", ylabel="y, mm")
-    right.set_aspect("equal")
-    right.grid(alpha=0.3)
-    right.legend(loc="upper right", frameon=False)
-    right.set_title(
-        f"{metrics['turns_done']:.0f} turns at {context['yaw_rate']:g} rad/s, {context['terrain']}, "
-        f"blind: {metrics['com']['distance_to_point_mean_mm']:.1f} mm from the point",
-        fontsize=10,
-    )
-    figure.tight_layout()
-    figure.savefig(out, dpi=110)
+def look(i: int) -> dict:
+    return {"color": style.colour(i), "ls": DASHES.get(style.dash(i), "-")}
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("run", type=Path, help="run folder, with trace.npy and metrics.json")
-    parser.add_argument("out", type=Path, help="picture to write, PNG")
-    arguments = parser.parse_args()
-
-    def body() -> None:
-        with command.whole_file(arguments.out) as part:
-            draw(load(arguments.run), part)
-
-    return command.run(body)
+def draw_paths(axes: Axes, runs: list[Run]) -> None:
+    """The centre of mass from the commanded point; of several runs the first on top."""
+    for i, run in reversed(list(enumerate(runs))):
+        com = MM * (run.record["true_com_position"][:, :2] - run.point)
+        axes.plot(com[:, 0], com[:, 1], lw=0.7, color=style.colour(i))
+    axes.plot(0, 0, "+", color=style.NEUTRAL, ms=12, mew=2)
+    axes.set(xlabel="x, mm", ylabel="y, mm", title="Path of the centre of mass")
+    axes.set_aspect("equal", adjustable="datalim")
 
 
-if __name__ == "__main__":
-    sys.exit(main())
+def draw_distances(axes: Axes, runs: list[Run]) -> None:
+    """Distance to the commanded point, or to the reference on a path, over time."""
+    largest = 0.0
+    for i, run in enumerate(runs):
+        rows = run.trace
+        goal = run.point if run.spins else rows["path_position"]
+        distance = MM * np.linalg.norm(rows["true_com_position"][:, :2] - goal, axis=1)
+        mean = distance[rows["time"] >= run.record_start].mean()
+        label = f"{run.name}: {mean:.3g} mm on the average"
+        axes.plot(rows["time"], distance, lw=1.0, label=label, **look(i))
+        largest = max(largest, distance.max())
+    axes.set(xlabel="time, s", ylabel="mm", title="Distance to where it is to be")
+    axes.set_ylim(0.0, (1.1 + 0.25 * len(runs)) * largest)  # the legend is above the curves
+    axes.set_xmargin(0)
+    axes.legend(fontsize=8, frameon=False, loc="upper left")
+
+
+def write_picture(runs: list[Run], file: Path) -> None:
+    """The picture as a PNG of about 1150 x 500 pixels."""
+    figure = Figure(figsize=(11, 4.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    left, right = figure.subfigures(1, 2, width_ratios=[1.1, 1.0])
+    robot = left.add_axes((0, 0, 1, 1))
+    robot.imshow(render(runs[0]))
+    robot.axis("off")
+    path, distance = right.subplots(2, 1, height_ratios=[2.2, 1.0])
+    draw_paths(path, runs)
+    draw_distances(distance, runs)
+    for axes in (path, distance):
+        axes.grid(alpha=0.3)
+        axes.title.set_size(10)
+    context = runs[0].context
+    figure.suptitle(f"{context['terrain']}, {context['yaw_rate']:g} rad/s, blind", fontsize=10)
+    figure.savefig(file, dpi=105, format="png", pil_kwargs={"optimize": True})

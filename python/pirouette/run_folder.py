@@ -1,4 +1,4 @@
-"""A run folder in memory: run.toml, metrics.json, trace.npy and, if there, terrain.npy."""
+"""A run folder in memory."""
 
 import json
 import tomllib
@@ -11,6 +11,7 @@ from pirouette import __version__
 from pirouette.errors import Error
 from pirouette.ground import Ground
 
+FILES = ("run.toml", "metrics.json", "trace.npy", "terrain.npy")
 LEGS = ("FR", "FL", "RR", "RL")  # order of every per-leg column of the trace
 SHORTEST_RECORD = 1.0  # s
 LEAST_COLUMNS = (
@@ -78,7 +79,7 @@ def load(folder: Path) -> Run:
     """Reads and checks a run folder. Raises RunError."""
     if not folder.is_dir():
         raise RunError(f"{folder}: is no folder; give the folder of a run")
-    missing = [n for n in ("run.toml", "metrics.json", "trace.npy") if not (folder / n).is_file()]
+    missing = [name for name in FILES if not (folder / name).is_file()]
     if missing:
         raise RunError(f"{folder}: is no run folder, {' and '.join(missing)} missing")
     metrics = load_metrics(folder / "metrics.json")
@@ -143,10 +144,8 @@ def load_trace(file: Path) -> np.ndarray:
 
 
 def load_ground(folder: Path, context: dict) -> Ground:
-    """The heights that the simulator wrote, else what the terrain's name says."""
+    """The heights that the simulator wrote."""
     file = folder / "terrain.npy"
-    if not file.is_file():
-        return Ground.named(context.get("terrain", "flat"))
     try:
         heights = np.load(file, allow_pickle=False)
     except (ValueError, EOFError, OSError) as error:
@@ -157,4 +156,10 @@ def load_ground(folder: Path, context: dict) -> Ground:
             f"{file}: has shape {heights.shape} and context.terrain_half_extent_m of metrics.json "
             f"is {extent}; expected two axes and a length in m"
         )
-    return Ground.square(heights, float(extent))
+    terrain = context.get("terrain", "flat")
+    try:
+        return Ground.square(heights, float(extent), terrain)
+    except ValueError:
+        raise RunError(
+            f"{folder / 'metrics.json'}: context.terrain is {terrain!r}; expected as of --terrain"
+        ) from None

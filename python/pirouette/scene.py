@@ -9,8 +9,9 @@ import viser
 from pirouette.ground import Ground
 from pirouette.robot import Poser, visible_shapes
 
+STILL = 1e-6  # m, that a body may be away from where it is drawn
 TILE = 0.1  # m, side of a field of the ground's checkerboard
-LIGHT_TILE, DARK_TILE = (214, 216, 220), (190, 193, 199)
+LIGHT_TILE, DARK_TILE = (190, 193, 198), (160, 164, 171)
 
 
 def add_ground(scene: viser.SceneApi, root: str, ground: Ground) -> None:
@@ -55,4 +56,6 @@ class RobotNodes:
         """Moves the bodies to where they truly were in a row of the trace."""
         self.poser.set(row)
         for body, node in self.bodies.items():
-            node.position, node.wxyz = self.poser.parent_pose(body)
+            position, node.wxyz = self.poser.parent_pose(body)
+            if np.abs(position - node.position).max() > STILL:  # hinges leave it where it is
+                node.position = position

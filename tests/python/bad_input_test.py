@@ -45,6 +45,12 @@ def no_trace(run):
     return run
 
 
+def cut_ground(run):
+    file = run / "terrain.npy"
+    file.write_bytes(file.read_bytes()[:-1000])
+    return file
+
+
 def no_folder(run):
     return run.rename(run.with_name("elsewhere")) and run
 
@@ -60,6 +66,7 @@ def no_folder(run):
         (broken_toml, "is no TOML"),
         (unknown_robot, "robot 'nobody' not found"),
         (no_trace, "is no run folder, trace.npy missing"),
+        (cut_ground, "is cut"),
         (no_folder, "is no folder"),
     ],
 )

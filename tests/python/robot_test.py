@@ -4,7 +4,7 @@ import mujoco
 import numpy as np
 import pytest
 
-from pirouette.ground import Ground
+from pirouette.ground import Ground, trend_of
 from pirouette.robot import Poser, load_model, visible_shapes
 from pirouette.run_folder import LEGS, load
 from pirouette.signals import TURN, in_heading, turn_average
@@ -47,13 +47,28 @@ def test_no_collision_shape_is_visible(run):
     assert np.ptp([low.min(axis=0)[0], high.max(axis=0)[0]]) == pytest.approx(0.354, abs=0.01)
 
 
-def test_named_stairs_are_level_between_risers():
-    ground = Ground.named("stairs:0.03x0.20").cropped(
-        np.array([-0.5, -0.2]), np.array([0.5, 0.2]), 0.1
-    )
+@pytest.mark.parametrize("terrain", ["slope:10", "stairs:0.03x0.20@30", "slope:5+rough:0.02"])
+def test_the_ground_goes_on_beyond_the_heights_of_the_run(terrain):
+    wide, narrow = np.linspace(-3.0, 3.0, 61), np.linspace(-1.5, 1.5, 31)
+    whole = trend_of(terrain)(*np.meshgrid(wide, wide))
+    known = Ground.square(trend_of(terrain)(*np.meshgrid(narrow, narrow)), 1.5, terrain)
+    assert known.sampled(wide, wide).z == pytest.approx(whole, abs=1e-9)
+
+
+def test_stairs_rise_between_treads_and_uphill_of_the_start():
+    stairs = trend_of("stairs:0.03x0.20")
     x = np.array([-0.11, -0.09, 0.0, 0.09, 0.11, 0.29, 0.31])
-    z = [np.interp(x, ground.x, row) for row in ground.z]
-    assert z == pytest.approx(np.tile([-1, 0, 0, 0, 1, 1, 2], (len(z), 1)) * 0.03, abs=1e-9)
+    assert stairs(x, 0.0 * x) == pytest.approx([-0.03, 0, 0, 0, 0.03, 0.03, 0.06])
+    turned = trend_of("stairs:0.03x0.20@90")
+    assert turned(0.0 * x, x) == pytest.approx(stairs(x, 0.0 * x))
+
+
+def test_uneven_ground_is_drawn_with_more_lines_than_a_plane(simulate):
+    low, high = np.array([-0.5, -0.2]), np.array([0.5, 0.2])
+    slope = load(simulate("slope", "spin", "--terrain", "slope:10")).ground.cropped(low, high, 0.1)
+    assert (len(slope.x), len(slope.y)) == (11, 5)
+    stairs = Ground.square(np.zeros((2, 2)), 1e-3, "stairs:0.03x0.20").cropped(low, high, 0.1)
+    assert (len(stairs.x), len(stairs.y)) == (101, 41)
 
 
 def test_a_grid_of_heights_has_rows_along_y():
@@ -63,7 +78,9 @@ def test_a_grid_of_heights_has_rows_along_y():
 
 
 def test_tiles_cover_the_ground_once():
-    ground = Ground.named("flat").cropped(np.array([-0.3, -0.3]), np.array([0.3, 0.3]), 0.1)
+    ground = Ground.square(np.zeros((2, 2)), 1.0).cropped(
+        np.array([-0.3, -0.3]), np.array([0.3, 0.3]), 0.1
+    )
     vertices = ground.vertices()
     faces = np.concatenate(ground.tiles(0.1))
     a, b, c = (vertices[faces[:, i], :2] for i in range(3))

@@ -3,7 +3,7 @@
 from fractions import Fraction
 from pathlib import Path
 
-from pirouette.stage import options, stage  # isort: skip - chooses the renderer for mujoco
+from pirouette.stage import add_forces, options, renderer, stage  # isort: skip - chooses the renderer for mujoco
 
 import av
 import mujoco
@@ -20,7 +20,7 @@ QUALITY = "23"  # of x264, lower is better
 def camera_at(centre: np.ndarray) -> mujoco.MjvCamera:
     camera = mujoco.MjvCamera()
     camera.lookat[:] = [centre[0], centre[1], centre[2] - 0.08]
-    camera.distance, camera.azimuth, camera.elevation = 1.15, 130, -22
+    camera.distance, camera.azimuth, camera.elevation = 1.15, 35, -22
     return camera
 
 
@@ -28,13 +28,14 @@ def write_video(run: Run, file: Path) -> None:
     """H.264; a frame shows the row of the trace at its time. The camera follows a robot that walks."""
     time, com = run.trace["time"], run.trace["true_com_position"]
     middle = com.mean(axis=0)
-    poser = Poser(stage(robot_file(run), run.ground, middle, SIZE, samples=0))
+    poser = Poser(stage(robot_file(run), run.ground, com, SIZE, samples=0, pitch=0.02))
+    has_forces = run.has("true_foot_force", "true_foot_position")
     shown = np.searchsorted(time, np.arange(time[0], time[-1], 1.0 / FRAME_RATE))
     with (
         av.open(str(file), "w") as container,
-        mujoco.Renderer(poser.model, SIZE[1], SIZE[0]) as renderer,
+        renderer(poser.model, SIZE) as painter,
     ):
-        renderer.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False  # most of the time otherwise
+        painter.scene.flags[mujoco.mjtRndFlag.mjRND_SHADOW] = False  # most of the time otherwise
         stream = container.add_stream("libx264", rate=FRAME_RATE)
         stream.width, stream.height = SIZE
         stream.pix_fmt = "yuv420p"
@@ -43,7 +44,9 @@ def write_video(run: Run, file: Path) -> None:
         for row in shown:
             data = poser.set(run.trace[row])
             mujoco.mj_camlight(poser.model, data)
-            renderer.update_scene(data, camera_at(middle if run.spins else com[row]), options())
-            frame = av.VideoFrame.from_ndarray(renderer.render(), format="rgb24")
+            painter.update_scene(data, camera_at(middle if run.spins else com[row]), options())
+            if has_forces:
+                add_forces(painter.scene, run.trace[row])
+            frame = av.VideoFrame.from_ndarray(painter.render(), format="rgb24")
             container.mux(stream.encode(frame))
         container.mux(stream.encode())

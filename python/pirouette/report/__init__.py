@@ -1,59 +1,17 @@
 """Writes the report of runs: one HTML file that opens from disk without a network.
 
-    pirouette-report RUN... [--out FILE]
+    pirouette-report RUN... [--out FILE] [--picture FILE.png]
 
 Tables, interactive figures and a 3D replay, from the run folders alone.
 """
 
 import argparse
 import os
-import re
-from html import escape
-from importlib.resources import files
+from importlib import import_module
 from pathlib import Path
 
-from plotly.offline import get_plotlyjs
-
 from pirouette import command
-from pirouette.report import figures, replay, summary
-from pirouette.run_folder import Run, load
-
-REPLAY_CAPTION = (
-    "Space or the button plays, drag the bar to scrub, the field at its right is the speed; drag the "
-    "picture to turn it. Orange arrows: contact forces. Diamonds: next footholds. Red ball: planned "
-    "centre of mass, on the ground. Pink: PSP vertices, a stick as tall as the vertex's weight. "
-    "Blue: terrain plane as estimated. The tree button shows and hides each of them."
-)
-
-
-def section(title: str, caption: str, content: str, kind: str = "") -> str:
-    return f'<section class="{kind}"><h2>{escape(title)}</h2><p>{escape(caption)}</p>{content}</section>'
-
-
-def page(runs: list[Run]) -> str:
-    """The report as an HTML document."""
-    drawn = figures.all_figures(runs)
-    plots = "".join(
-        section(title, caption, f'<div class="plot" id="figure-{i}"></div>')
-        for i, (title, caption, _) in enumerate(drawn)
-    )
-    data = ",".join(figure.to_json() for _, _, figure in drawn)
-    differences = summary.differences(runs)
-    frame = f'<iframe title="3D replay" srcdoc="{escape(replay.page(runs))}"></iframe>'
-    parts = {
-        "title": escape(f"pirouette: {', '.join(run.name for run in runs)}"),
-        "notices": summary.notices(runs),
-        "measured": summary.measured(runs),
-        "replay": section("Replay", REPLAY_CAPTION, frame, "replay"),
-        "figures": plots,
-        "settings": summary.settings(runs),
-        "differences": differences
-        and section("Where the runs differ", "Keys of run.toml.", differences),
-        "plotly": get_plotlyjs(),
-        "data": f"[{data}]".replace("</", "<\\/"),
-    }
-    template = files(__name__).joinpath("page.html").read_text(encoding="utf-8")
-    return re.sub(r"\{\{(\w+)\}\}", lambda match: parts[match[1]], template)
+from pirouette.run_folder import load
 
 
 def default_file(folders: list[Path]) -> Path:
@@ -63,12 +21,19 @@ def default_file(folders: list[Path]) -> Path:
     return Path(os.path.commonpath([folder.resolve() for folder in folders])) / "report.html"
 
 
-def write(folders: list[Path], out: Path | None) -> Path:
-    """Reads the runs, writes their report, returns its path. Raises RunError."""
+def write(folders: list[Path], out: Path | None, picture: Path | None = None) -> Path:
+    """Reads the runs, writes their report and perhaps a picture of them, returns the report's path.
+    Raises RunError."""
     runs = [load(folder) for folder in folders]
     out = out or default_file(folders)
+    # Imported now: they take longer than to find out that a folder is no run.
+    draw = import_module("pirouette.picture").write_picture if picture else None  # before mujoco
+    page = import_module("pirouette.report.page").page
     with command.whole_file(out) as part:
         part.write_text(page(runs), encoding="utf-8")
+        if draw and picture:
+            with command.whole_file(picture) as picture_part:
+                draw(runs, picture_part)
     return out
 
 
@@ -78,5 +43,8 @@ def main() -> int:
     )
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="run folder")
     parser.add_argument("--out", type=Path, metavar="FILE", help="file to write [RUN/report.html]")
-    arguments = parser.parse_args()
-    return command.run(lambda: print(write(arguments.runs, arguments.out)))
+    parser.add_argument(
+        "--picture", type=Path, metavar="FILE.png", help="also a picture for a README or slides"
+    )
+    given = parser.parse_args()
+    return command.run(lambda: print(write(given.runs, given.out, given.picture)))

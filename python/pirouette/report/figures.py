@@ -9,7 +9,7 @@ from pirouette.report.paper import PRINTED_RADII
 from pirouette.run_folder import LEGS, Run
 from pirouette.signals import MM, TURN, accelerations, in_heading, turn_average
 
-MOST_POINTS = 6000  # of a line; longer ones are thinned
+MOST_POINTS = 10_000  # of a line; longer ones are thinned
 STRIDES_SHOWN = 10.0  # s, of the contact figures
 FIRST_VIEW = 2.0  # s, of it that is seen at first
 
@@ -96,7 +96,7 @@ def path_figure(runs: list[Run]) -> go.Figure:
         com = MM * (run.record["true_com_position"][:, :2] - run.point)
         look = of_run(i, run)
         look["line"]["width"] = 0.8
-        figure.add_trace(line(com[:, 0], com[:, 1], opacity=0.7, **look))
+        figure.add_trace(line(com[:, 0], com[:, 1], opacity=0.8, **look))
         if not run.spins and run.has("path_position"):
             path = MM * (run.record["path_position"] - run.point)
             figure.add_trace(
@@ -170,8 +170,8 @@ def time_figure(runs: list[Run]) -> go.Figure:
         [
             f"distance to<br>{'point' if spins else 'reference'}, mm",
             "drift, mm",
-            "velocity<br>forwards, mm/s",
-            "velocity<br>to the left, mm/s",
+            "velocity<br>ahead, mm/s",
+            "velocity<br>left, mm/s",
             "roll, mrad",
             "pitch, mrad",
             "yaw rate, rad/s",
@@ -212,13 +212,13 @@ def acceleration_figure(runs: list[Run]) -> go.Figure:
         shared_yaxes="columns",
         vertical_spacing=0.06 / len(runs),
         horizontal_spacing=0.1,
-        row_titles=[run.name for run in runs],
+        row_titles=[run.name for run in runs] if len(runs) > 1 else None,
     )
     for i, run in enumerate(runs):
         for column, x in enumerate(accelerations(run.record), start=1):
             look = of_run(i, run, False)
             look["line"] = {"color": style.colour(i), "width": 0.6}
-            figure.add_trace(line(x[:, 0], x[:, 1], **look), row=i + 1, col=column)
+            figure.add_trace(line(x[:, 0], x[:, 1], opacity=0.8, **look), row=i + 1, col=column)
         figure.update_yaxes(title_text="y, m/s²", row=i + 1, col=1)
         figure.update_yaxes(title_text="pitch, rad/s²", row=i + 1, col=2)
     figure.update_xaxes(title_text="x, m/s²", row=len(runs), col=1)
@@ -323,7 +323,9 @@ def timing_figure(runs: list[Run]) -> go.Figure:
                     "color": style.colour(i),
                     "pattern": {"shape": style.PATTERNS[i % len(style.PATTERNS)]},
                 },
-                texttemplate="%{y:.3g}",
+                texttemplate="%{y:.3~r}",
+                textposition="outside",
+                cliponaxis=False,
             )
         )
     figure.update_yaxes(type="log", title_text="time, µs")

@@ -25,6 +25,7 @@ METRES_PER_NEWTON = 0.0025
 LEAST_FORCE = 1.0  # N, that is drawn
 PLANE_SIZE = 0.5  # m
 ABOVE_GROUND = 0.004  # m, at which flat things are drawn
+BALL, DIAMOND = 0.01, 0.012  # m, radius of the planned centre of mass and side of a foothold
 STICK = 0.1  # m, of a vertex of weight 1
 
 
@@ -45,11 +46,7 @@ def record(server: viser.ViserServer, runs: list[Run]) -> str:
     """Builds the scene, plays it into a recording and returns that as HTML."""
     server.scene.configure_default_lights(cast_shadow=False)
     actors = beside_each_other(server.scene, runs)
-    width = sum(actor.width for actor in actors) + GAP * (len(actors) - 1)
-    distance = max(0.95, 0.8 * width)
-    server.initial_camera.look_at = (0.0, 0.0, 0.12)
-    server.initial_camera.position = (0.8 * distance, -0.5 * distance, 0.55 * distance)
-    server.initial_camera.fov = np.radians(50.0)
+    aim_camera(server, actors)
     recording = server.get_scene_serializer()
     duration = max(actor.time[-1] - actor.time[0] for actor in actors)
     for frame in range(int(duration * FRAME_RATE) + 1):
@@ -57,6 +54,18 @@ def record(server: viser.ViserServer, runs: list[Run]) -> str:
             actor.show(frame / FRAME_RATE)
         recording.insert_sleep(1.0 / FRAME_RATE)
     return recording.as_html()
+
+
+def aim_camera(server: viser.ViserServer, actors: list["Actor"]) -> None:
+    """From below a climb along x, where risers are seen: at one run from its side, at several so
+    that the first is at the left."""
+    length = max(actor.size[0] for actor in actors)
+    width = sum(actor.size[1] for actor in actors) + GAP * (len(actors) - 1)
+    direction = np.array([-0.8, -0.5 if len(actors) == 1 else 0.0, 0.55])
+    distance = max(0.95, 0.65 * width, 0.5 * length)
+    server.initial_camera.look_at = (0.0, 0.0, 0.12)
+    server.initial_camera.position = tuple(distance * direction)
+    server.initial_camera.fov = np.radians(50.0)
 
 
 def beside_each_other(scene: viser.SceneApi, runs: list[Run]) -> list["Actor"]:
@@ -67,7 +76,8 @@ def beside_each_other(scene: viser.SceneApi, runs: list[Run]) -> list["Actor"]:
     actors = []
     for i, (run, (low, high), width) in enumerate(zip(runs, corners, widths, strict=True)):
         middle = 0.5 * (low + high)
-        origin = np.array([-middle[0], left - 0.5 * width - middle[1], 0.0])
+        height = float(run.ground.height(*middle))
+        origin = np.array([-middle[0], left - 0.5 * width - middle[1], -height])
         left -= width + GAP
         actors.append(Actor(scene, run, f"/{i + 1} {run.name}", origin, low, high, i))
     return actors
@@ -104,7 +114,7 @@ class Actor:
         index: int,
     ) -> None:
         self.scene, self.run, self.root = scene, run, root
-        self.width = float(high[1] - low[1])
+        self.size = high - low  # m, of its ground, shape (2,)
         rows = run.trace[run.trace["time"] >= run.trace["time"][-1] - LONGEST]
         self.rows, self.time = rows, rows["time"]
         self.shows_plan = run.has(
@@ -130,7 +140,7 @@ class Actor:
         com = self.run.record["true_com_position"]
         stride = max(1, len(com) // 3000)
         path = com[::stride].copy()
-        path[:, 2] = self.ground_height(path) + ABOVE_GROUND
+        path[:, 2] = self.run.ground.height(path[:, 0], path[:, 1]) + ABOVE_GROUND
         self.scene.add_line_segments(
             f"{self.root}/path of the centre of mass",
             np.stack([path[:-1], path[1:]], axis=1),
@@ -138,28 +148,16 @@ class Actor:
             thickness=0.003,
         )
         if self.run.spins:
-            point = np.append(self.run.point, 0.0)
-            point[2] = self.ground_height(point[None])[0] + ABOVE_GROUND
+            point = np.append(self.run.point, self.run.ground.height(*self.run.point))
             self.scene.add_cylinder(
                 f"{self.root}/commanded point",
                 radius=0.012,
                 height=0.002,
                 color=(230, 159, 0),
-                position=point,
+                position=point + [0.0, 0.0, ABOVE_GROUND],
             )
-        above = np.append(com.mean(axis=0)[:2], com[:, 2].max() + 0.25)
+        above = np.append(com.mean(axis=0)[:2], com[:, 2].max() + 0.3)
         self.scene.add_label(f"{self.root}/name", self.run.name, position=above)
-
-    def ground_height(self, points: np.ndarray) -> np.ndarray:
-        """Of the drawn ground below points, m, shape (n, 2 or 3)."""
-        ground = self.run.ground
-        column = np.clip(np.searchsorted(ground.x, points[:, 0]) - 1, 0, len(ground.x) - 2)
-        row = np.clip(np.searchsorted(ground.y, points[:, 1]) - 1, 0, len(ground.y) - 2)
-        u = (points[:, 0] - ground.x[column]) / (ground.x[column + 1] - ground.x[column])
-        v = (points[:, 1] - ground.y[row]) / (ground.y[row + 1] - ground.y[row])
-        near = (1 - u) * ground.z[row, column] + u * ground.z[row, column + 1]
-        far = (1 - u) * ground.z[row + 1, column] + u * ground.z[row + 1, column + 1]
-        return (1 - v) * near + v * far
 
     def add_forces(self) -> list[viser.ArrowsHandle]:
         return [
@@ -182,13 +180,13 @@ class Actor:
         return Plan(
             self.scene.add_frame(root, show_axes=False),
             self.scene.add_icosphere(
-                f"{root}/planned centre of mass", radius=0.01, color=style.rgb(1)
+                f"{root}/planned centre of mass", radius=BALL, color=style.rgb(1)
             ),
             self.scene.add_point_cloud(
                 f"{root}/footholds",
                 np.zeros((4, 3)),
                 style.rgb(2),
-                point_size=0.012,
+                point_size=DIAMOND,
                 point_shape="diamond",
                 point_shading="flat",
                 precision="float32",
@@ -233,8 +231,9 @@ class Actor:
             z = a0 + a1 * xy[..., 0] + a2 * xy[..., 1] + ABOVE_GROUND
             return np.concatenate([xy, z[..., None]], axis=-1)
 
-        self.plan.com.position = on_plane(row["com_plan"])  # it is hidden at its height
-        self.plan.footholds.points = row["foothold"] + [0.0, 0.0, ABOVE_GROUND]
+        # On the ground: at its height the trunk hides it.
+        self.plan.com.position = on_plane(row["com_plan"]) + [0.0, 0.0, BALL]
+        self.plan.footholds.points = row["foothold"] + [0.0, 0.0, DIAMOND]
         self.plan.plane.position = on_plane(row["com_position"][:2])
         normal = np.array([-a1, -a2, 1.0]) / np.sqrt(1.0 + a1 * a1 + a2 * a2)
         half = np.array([1.0 + normal[2], -normal[1], normal[0], 0.0])  # turns z onto the normal

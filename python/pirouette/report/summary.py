@@ -8,7 +8,7 @@ from pirouette.run_folder import Run
 MEASURED = {
     "turns_done": ("turns", ""),
     "yaw_rate_mean": ("yaw rate", "rad/s"),
-    "yaw_rate_error": ("yaw rate error", "1"),
+    "yaw_rate_error": ("yaw rate error, share", ""),
     "com.distance_to_point_mean_mm": ("distance to point, mean", "mm"),
     "com.distance_to_point_max_mm": ("distance to point, largest", "mm"),
     "path.cross_track_mean_mm": ("cross-track error, mean", "mm"),
@@ -126,11 +126,32 @@ def flattened(tree: dict, prefix: str = "") -> dict[str, object]:
     return flat
 
 
-def notices(runs: list[Run]) -> str:
-    """What must not be overlooked."""
-    texts = [
-        f"{run.name}: the robot fell after {shown(run.metrics.get('fall_time_s'))} s."
+def headlines(runs: list[Run]) -> str:
+    """A sentence about each run; falls must not be overlooked."""
+    return "".join(
+        f'<p class="{"notice" if run.metrics.get("fell") else "headline"}">'
+        f"{escape(f'{run.name}: {headline(run)}')}</p>"
         for run in runs
-        if run.metrics.get("fell")
-    ]
-    return "".join(f"<p class=notice>{escape(text)}</p>" for text in texts)
+    )
+
+
+def headline(run: Run) -> str:
+    """What the robot did, in words."""
+    metrics, context = run.metrics, run.context
+    where = f"on {context.get('terrain', 'flat')}, controller {context.get('controller')}"
+    if metrics.get("fell"):
+        return f"the robot fell after {rounded(metrics.get('fall_time_s'))} s {where}."
+    turns, rate = rounded(metrics.get("turns_done")), rounded(metrics.get("yaw_rate_mean"))
+    if run.spins:
+        distance = rounded(at(metrics, "com.distance_to_point_mean_mm"))
+        return (
+            f"{turns} turns at {rate} rad/s {where}; the centre of mass was {distance} mm from the "
+            "commanded point on the average."
+        )
+    beside = at(metrics, "path.cross_track_mean_mm")
+    way = "" if beside is None else f"; {rounded(beside)} mm beside its path on the average"
+    return f"walked {where}{way}."
+
+
+def rounded(value: object) -> str:
+    return f"{value:.3g}" if isinstance(value, float) else shown(value)

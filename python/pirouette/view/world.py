@@ -14,7 +14,6 @@ ROOT = "/world"
 HALF_SIZE = 1.5  # m, of the ground that is shown around the robot
 FINE_STEPS = 4  # of uneven ground in a tile
 SHIFT = 0.75  # m, from the shown ground's middle, at which it moves with the robot
-LEVEL = 1e-9  # m, of curvature that is rounding
 
 
 class World:
@@ -41,10 +40,9 @@ class World:
         fine = TILE / FINE_STEPS
         steps = fine * np.arange(-round(HALF_SIZE / fine), round(HALF_SIZE / fine) + 1)
         x, y = (steps + middle for middle in self.middle)
-        z = self.simulation.ground(x, y)
-        curvature = max(np.abs(np.diff(z, 2, axis=axis)).max() for axis in (0, 1))
-        every = FINE_STEPS if curvature < LEVEL else 1
-        add_ground(self.scene, ROOT, Ground(x[::every], y[::every], z[::every, ::every]))
+        fine = Ground(x, y, self.simulation.ground(x, y))
+        coarse = fine.sampled(x[::FINE_STEPS], y[::FINE_STEPS])
+        add_ground(self.scene, ROOT, coarse if fine.is_plane else fine)
 
     def show(self, state: Mapping[str, np.ndarray], follow: bool) -> None:
         """Moves the robot; with `follow` it stays in the middle and the world moves."""
