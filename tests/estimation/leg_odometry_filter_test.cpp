@@ -75,6 +75,7 @@ class RandomInputs {
 TEST(LegOdometryFilter, IsTheFullKalmanFilterOf18StatesAnd28Measurements) {
   for (const double scale : {1.0, 1e3}) {  // noise of this project, and about that of [Bledt18]
     EstimationConfig config;
+    config.velocity_jump = 100.0;  // m/s; beyond any input here, so that the filter is linear
     config.process_velocity *= scale;
     config.process_foot *= scale;
     config.measurement_position *= scale;
@@ -96,6 +97,40 @@ TEST(LegOdometryFilter, IsTheFullKalmanFilterOf18StatesAnd28Measurements) {
       }
     }
   }
+}
+
+/// The filter's velocity after 20 ms of standing and 4 ms in which feet say that the trunk moves
+/// with `v_by_foot` (m/s, along x).
+double velocity_after(const PerLeg<double>& v_by_foot, const PerLeg<double>& trust) {
+  LegOdometryFilter filter{EstimationConfig{}};
+  filter.reset(Vec3(0.0, 0.0, kHeight), feet_below_hips(0.0225));
+  double v = 0.0;
+  for (int tick = 0; tick < 12; ++tick) {
+    OdometryInput in;
+    for (const Leg leg : kLegs) {
+      in.foot[leg].p_BF_W = feet_below_hips(0.0225)[leg];
+      in.foot[leg].v_BF_W.x() = tick < 10 ? 0.0 : -v_by_foot[leg];
+      in.foot[leg].trust = trust[leg];
+    }
+    v = filter.update(in, kTick).v_WB_W.x();
+  }
+  return v;
+}
+
+TEST(VelocityJump, IsFollowedAtOnceWhenAllFirmFeetAgree) {
+  const auto all = PerLeg<double>::filled(1.0);
+  const PerLeg<double> two = {{1.0, 0.0, 0.5, 1.0}};
+  // A tenth less: the feet's positions, which stand still here, speak against it.
+  const double jump = 0.3;
+  EXPECT_NEAR(velocity_after(PerLeg<double>::filled(jump), all), jump, 0.1 * jump);
+  EXPECT_NEAR(velocity_after({{jump, 9.0, jump, jump}}, two), jump, 0.1 * jump);
+}
+
+TEST(VelocityJump, IsNotOneFootsSlipNorOnesWordAloneNorNoise) {
+  const auto all = PerLeg<double>::filled(1.0);
+  EXPECT_LT(velocity_after({{0.5, 0.0, 0.0, 0.0}}, all), 0.05);
+  EXPECT_LT(velocity_after(PerLeg<double>::filled(0.3), {{1.0, 0.0, 0.0, 0.5}}), 0.1);
+  EXPECT_LT(velocity_after(PerLeg<double>::filled(0.09), all), 0.03);
 }
 
 void expect_positive_semidefinite(const Eigen::MatrixXd& P, int tick) {

@@ -225,5 +225,23 @@ TEST(GaitClock, NewTimingCatchesNoFootInTheAir) {
   }
 }
 
+TEST(GaitClock, HurriesInTheMiddleOfTheStrideWithoutAJumpOfThePhase) {
+  GaitClock clock(timing(0.5, 0.6));
+  GaitPhase before;
+  for (int i = 0; i < 180; ++i) before = clock.update(true, kDt);
+  clock.set_timing(0.25, 0.6);
+  clock.hurry();
+  const GaitPhase phase = clock.update(true, kDt);
+  EXPECT_NEAR(phase.cycle, before.cycle + kDt / 0.25, 1e-12);
+  for (const Leg leg : kLegs) {
+    EXPECT_EQ(phase.leg[leg].stance, before.leg[leg].stance);
+    const double left = 0.5 * before.leg[leg].time_remaining - kDt;
+    EXPECT_NEAR(phase.leg[leg].time_remaining, left, 1e-12);
+  }
+  clock.set_timing(0.5, 0.6);
+  clock.hurry();  // only ever shortens
+  EXPECT_NEAR(clock.update(true, kDt).cycle, phase.cycle + kDt / 0.25, 1e-12);
+}
+
 }  // namespace
 }  // namespace pirouette

@@ -85,12 +85,21 @@ struct GaitConfig {
   double step_duty = 0.7;
   double step_clearance = 0.05;
   double max_swing_height = 0.16;
+  double recovery_speed = 0.15;
+  double recovery_period = 0.26;
+  double recovery_time = 0.6;
+
+  static constexpr double kMinSwingTime = 0.05;  ///< s; a leg cannot lift, move and land in less
 
   /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far
   /// in one.
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
     return std::max(std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate));
+  }
+  /// s, of the stride after a push.
+  double recovery_period_at(double yaw_rate) const {
+    return std::min(period_at(yaw_rate), std::max(recovery_period, kMinSwingTime / (1.0 - duty)));
   }
 
   template <class Self, class Visit>
@@ -106,12 +115,20 @@ struct GaitConfig {
       "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk "
       "by more.");
     v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "That rule shortens no further.");
-    v(s.adapt, "adapt", "Duty and swing height follow the ground that the feet have met.");
+    v(s.adapt, "adapt",
+      "Duty and swing height follow the ground that the feet have met, the stride follows pushes.");
     v(s.step_duty, "step_duty", "1", Range{0.4, 0.9}, "Duty on stepped ground, if more than duty.");
     v(s.step_clearance, "step_clearance", "m", Range{0.0, 0.2},
       "On stepped ground the swing's apex is this far above the highest step met.");
     v(s.max_swing_height, "max_swing_height", "m", Range{0.005, 0.3},
       "The rule raises the apex no further.");
+    v(s.recovery_speed, "recovery_speed", "m/s", Range{0.01, 100.0},
+      "The robot counts as pushed when the CoM's velocity is off its reference by more. Not on "
+      "stepped ground.");
+    v(s.recovery_period, "recovery_period", "s", Range{0.1, 2.0},
+      "Stride of a robot that was pushed, if shorter than gait.period; at once.");
+    v(s.recovery_time, "recovery_time", "s", Range{0.0, 60.0},
+      "That stride lasts until the velocity has been within recovery_speed for this long.");
   }
 };
 
@@ -292,6 +309,7 @@ struct EstimationConfig {
   double measurement_height = 1e-6;
   double swing_noise_factor = 100.0;
   double trust_window = 0.02;
+  double velocity_jump = 0.1;
   double attitude_time_constant = 4.0;
   double gyro_bias_time_constant = 60.0;
   double gyro_rest_samples = 600.0;
@@ -317,6 +335,10 @@ struct EstimationConfig {
       "Added noise of a foot whose trust is only beginning or ending, as a multiple.");
     v(s.trust_window, "trust_window", "1", Range{0.0, 0.5},
       "Share of the stance at each end over which a foot's trust ramps.");
+    v(s.velocity_jump, "velocity_jump", "m/s", Range{0.01, 100.0},
+      "When all fully trusted feet agree that the velocity is off by more, it was a push: the "
+      "filter "
+      "follows them at once.");
     v(s.attitude_time_constant, "attitude_time_constant", "s", Range{0.1, 1000.0},
       "Time constant with which gravity corrects roll and pitch.");
     v(s.gyro_bias_time_constant, "gyro_bias_time_constant", "s", Range{1.0, 1e5},
@@ -487,6 +509,10 @@ struct SafetyConfig {
   double min_height_share = 0.4;
   int max_bad_readings = 10;
   int max_solver_failures = 10;
+  double max_gyro_step = 3.0;
+  double max_accelerometer_step = 80.0;
+  int max_repeated_samples = 50;
+  double max_blind_travel = 0.05;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -501,6 +527,17 @@ struct SafetyConfig {
     v(s.max_solver_failures, "max_solver_failures", "1", Range{0, 10000},
       "The last good forces are held over this many failed solutions in a row, then the controller "
       "stands down.");
+    v(s.max_gyro_step, "max_gyro_step", "rad/s", Range{0.01, 1e6},
+      "An IMU sample whose gyro leaves the last good one by more is a spike: that one stands in, "
+      "for up to max_bad_readings ticks.");
+    v(s.max_accelerometer_step, "max_accelerometer_step", "m/s^2", Range{0.1, 1e6},
+      "The same for its accelerometer.");
+    v(s.max_repeated_samples, "max_repeated_samples", "ticks", Range{0, 100000},
+      "An IMU that repeats its sample to the last bit while walking is dead after this many, and "
+      "the controller stands down.");
+    v(s.max_blind_travel, "max_blind_travel", "rad", Range{0.001, 100.0},
+      "An encoder that repeats its angle to the last bit over this much commanded travel is stuck: "
+      "its leg counts no more as odometry. Two such legs: the controller stands down.");
   }
 };
 

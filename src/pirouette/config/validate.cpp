@@ -103,7 +103,7 @@ Errors validate(const Config& config) {
   require(config.run.trace_rate <= config.control.rate, "run.trace_rate", "given ",
           config.run.trace_rate, " Hz; allowed: up to control.rate = ", config.control.rate, " Hz");
 
-  constexpr double kMinSwingTime = 0.05;  // s; a leg cannot lift, move and land in less
+  constexpr double kMinSwingTime = GaitConfig::kMinSwingTime;
   const double swing_time = config.gait.period * (1.0 - config.gait.duty);
   require(swing_time > kMinSwingTime - kRounding, "gait.duty", "given ", config.gait.duty,
           " with gait.period = ", config.gait.period, " s: a swing of ", swing_time,

@@ -162,6 +162,8 @@ Vec3 Localization::contact_normal(const TickTrace& trace) const {
 
 /// The foot's contact flag once it has held for long enough; what it was before, until then.
 bool Localization::debounced(const TickTrace& trace, Leg leg) noexcept {
+  // Nobody knows where the foot of such a leg is.
+  if (trace.encoder_stuck[leg]) return false;
   const bool before = trace.contacts[leg].measured;
   if (!trace.sensors.foot_contact) return trace.gait.leg[leg].stance;
   int& changed_for = flag_changed_for_[leg];

@@ -7,6 +7,8 @@
 #include "pirouette/controller/command_guard.hpp"
 #include "pirouette/controller/ground_sense.hpp"
 #include "pirouette/controller/localization.hpp"
+#include "pirouette/controller/push_recovery.hpp"
+#include "pirouette/controller/sensor_guard.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "pirouette/gait/foothold_planner.hpp"
 #include "pirouette/gait/gait_clock.hpp"
@@ -26,25 +28,6 @@ using Clock = std::chrono::steady_clock;
 
 double microseconds_since(Clock::time_point start) {
   return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
-
-bool is_finite(const SensorReading& s) {
-  bool ok = std::isfinite(s.time) && s.specific_force_B.allFinite() && s.w_WB_B.allFinite();
-  for (const Leg leg : kLegs)
-    ok = ok && s.joint_position[leg].allFinite() && s.joint_velocity[leg].allFinite();
-  if (s.aid) {
-    ok = ok && s.aid->p_WB.allFinite() && std::isfinite(s.aid->yaw) && std::isfinite(s.aid->time);
-  }
-  if (s.truth) {
-    ok = ok && s.truth->p_WB.allFinite() && s.truth->R_WB.allFinite() &&
-         s.truth->v_WB_W.allFinite() && s.truth->w_WB_B.allFinite();
-  }
-  return ok;
-}
-
-bool is_finite(const MotionCommand& c) {
-  return c.v_H.allFinite() && std::isfinite(c.yaw_rate) && (!c.point || c.point->allFinite()) &&
-         (!c.heading || std::isfinite(*c.heading));
 }
 
 /// Joint angles with every foot below its hip, CoM (taken at the trunk origin) at the working
@@ -73,8 +56,10 @@ struct SpinController::Impl {
         model(std::move(robot)),
         legs(model.legs()),
         posture(nominal_posture(legs, c.body.height)),
+        sensor_guard(c.safety, 1.0 / c.control.rate),
         localization(c, legs),
         ground(c.terrain, legs[Leg::kFR].foot_radius),
+        push_recovery(c.gait),
         clock(c.gait),
         aid_offset(c.aid),
         path_reference(c.path),
@@ -96,7 +81,6 @@ struct SpinController::Impl {
   }
 
   void reset(const BasePose& pose);
-  bool accept(const SensorReading& sensors, const MotionCommand& command);
   void start_from_first_reading();
   double measured_period(const SensorReading& sensors) const;
 
@@ -122,8 +106,10 @@ struct SpinController::Impl {
   Vec3 p_BG_nominal;
   PerLeg<Vec2> nominal_H{};  ///< m, footholds from the CoM
 
+  SensorGuard sensor_guard;
   Localization localization;
   GroundSense ground;
+  PushRecovery push_recovery;
   GaitClock clock;
   PositionAidOffset aid_offset;
   PathReference path_reference;
@@ -136,9 +122,6 @@ struct SpinController::Impl {
 
   BasePose start;
   bool started = false;
-  SensorReading last_good;
-  MotionCommand last_good_command;
-  int bad_readings = 0;
   int mpc_failures = 0;  ///< solutions in a row
   int wbc_failures = 0;
   int ticks_until_mpc = 0;
@@ -156,10 +139,12 @@ void SpinController::Impl::reset(const BasePose& pose) {
   started = false;
   trace = TickTrace{};
   timing = TickTiming{};
-  bad_readings = mpc_failures = wbc_failures = ticks_until_mpc = 0;
+  mpc_failures = wbc_failures = ticks_until_mpc = 0;
   was_in_contact = {};
   last_forces = ContactForces{};
+  sensor_guard.reset();
   localization.reset(pose);
+  push_recovery.reset();
   clock.reset();
   aid_offset.reset();
   path_reference.reset();
@@ -167,24 +152,10 @@ void SpinController::Impl::reset(const BasePose& pose) {
   com_planner.reset();
 }
 
-/// Bridges single bad inputs by the last good ones, one nominal period on; false when there have
-/// been too many.
-bool SpinController::Impl::accept(const SensorReading& sensors, const MotionCommand& command) {
-  if (is_finite(sensors) && is_finite(command)) {
-    last_good = sensors;
-    last_good_command = command;
-    bad_readings = 0;
-    return true;
-  }
-  ++bad_readings;
-  last_good.time += 1.0 / config.control.rate;
-  return started && bad_readings <= config.safety.max_bad_readings;
-}
-
 void SpinController::Impl::start_from_first_reading() {
+  const SensorReading& first = sensor_guard.input().sensors;
   for (const Leg leg : kLegs) {
-    trace.feet[leg] =
-        foot_state(legs[leg], last_good.joint_position[leg], last_good.joint_velocity[leg]);
+    trace.feet[leg] = foot_state(legs[leg], first.joint_position[leg], first.joint_velocity[leg]);
   }
   localization.start(start, trace);
   p_WF_liftoff = trace.state.p_WF;
@@ -193,7 +164,7 @@ void SpinController::Impl::start_from_first_reading() {
     contacts[index(leg)] = localization.foot().contact_point(p_WF_liftoff[leg], Vec3::UnitZ());
   }
   trace.plane = ground.start(contacts);
-  guard.reset(last_good.joint_position);
+  guard.reset(first.joint_position);
   started = true;
 }
 
@@ -209,13 +180,18 @@ double SpinController::Impl::com_height_above_plane() const {
   return config.body.height - hidden_radius;
 }
 
-/// Duty and stride by rule: the yaw rate shortens the stride, steps lengthen the stance. Both take
-/// effect at the next touchdown.
+/// Duty and stride by rule: the yaw rate shortens the stride, steps lengthen the stance; both take
+/// effect at the next touchdown. A push shortens the stride at once.
 void SpinController::Impl::set_gait(const MotionCommand& command, double dt) {
   const GaitConfig& gait = config.gait;
   const bool careful = gait.adapt && trace.ground.stepped;
-  clock.set_timing(gait.period_at(command.yaw_rate),
+  const Vec2 v_error = (trace.state.v_WG_W - trace.reference.v_WG_W).head<2>();
+  const bool pushed =
+      push_recovery.update(v_error, dt) && trace.gait.walking && gait.adapt && !careful;
+  const double yaw_rate = command.yaw_rate;
+  clock.set_timing(pushed ? gait.recovery_period_at(yaw_rate) : gait.period_at(yaw_rate),
                    careful ? std::max(gait.duty, gait.step_duty) : gait.duty);
+  if (pushed) clock.hurry();
   trace.gait = clock.update(command.walk, dt);
   trace.status = trace.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
 }
@@ -453,20 +429,22 @@ const JointCommand& SpinController::tick(const SensorReading& sensors,
   Impl& s = *impl_;
   TickTrace& t = s.trace;
   if (is_stood_down(t.status)) return t.command;
-  if (!s.accept(sensors, command)) {
+  if (!s.sensor_guard.update(sensors, command, t.command, t.gait.walking)) {
     s.stand_down(ControllerStatus::kBadInput);
     return t.command;
   }
-  const double dt = s.measured_period(s.last_good);
+  const GuardedInput& in = s.sensor_guard.input();
+  const double dt = s.measured_period(in.sensors);
   if (!s.started) s.start_from_first_reading();
-  t.sensors = s.last_good;
+  t.sensors = in.sensors;
+  t.encoder_stuck = in.encoder_stuck;
 
   s.localization.estimate(s.model, dt, t);
-  s.set_gait(s.last_good_command, dt);
+  s.set_gait(in.command, dt);
   s.localization.find_contacts(t);
   s.follow_contacts();
   s.ground.update(dt, t);
-  s.plan_body(s.last_good_command, dt);
+  s.plan_body(in.command, dt);
   s.plan_feet(dt);
   s.solve_mpc();
   s.solve_whole_body(dt);

@@ -13,6 +13,9 @@ constexpr double kInitialVariance = 1e-4;
 // positive semidefinite.
 constexpr double kMaxPositionVariance = 1.0;
 
+constexpr double kFirmTrust = 0.999;     // of a foot in the middle of its stance
+constexpr double kLargestDissent = 0.5;  // of a foot from the feet's mean, as a share of that
+
 constexpr int foot_state(Leg leg) { return 2 + static_cast<int>(index(leg)); }
 
 /// Scalar measurement updates are exact because the measurement noise is diagonal. `h` selects
@@ -68,9 +71,34 @@ void LegOdometryFilter::place_lifted_feet(const OdometryInput& in) noexcept {
   }
 }
 
+std::optional<double> LegOdometryFilter::velocity_jump(const OdometryInput& in) const noexcept {
+  PerLeg<Vec2> error_xy;
+  Vec2 mean = Vec2::Zero();
+  int firm = 0;
+  for (const Leg leg : kLegs) {
+    const FootOdometry& foot = in.foot[leg];
+    if (foot.trust < kFirmTrust) continue;
+    const Vec3 v_measured = foot.v_WF_stance_W - foot.v_BF_W;
+    error_xy[leg] = v_measured.head<2>() - x_.row(kVelocity).head<2>().transpose();
+    mean += error_xy[leg];
+    ++firm;
+  }
+  if (firm < 2) return std::nullopt;
+  mean /= firm;
+  if (mean.norm() < config_.velocity_jump) return std::nullopt;
+  for (const Leg leg : kLegs) {
+    const bool counts = in.foot[leg].trust >= kFirmTrust;
+    if (counts && (error_xy[leg] - mean).norm() > kLargestDissent * mean.norm())
+      return std::nullopt;
+  }
+  return mean.norm();
+}
+
 OdometryEstimate LegOdometryFilter::update(const OdometryInput& in, double dt) noexcept {
   predict(in, dt);
   place_lifted_feet(in);
+  if (const std::optional<double> jump = velocity_jump(in))
+    P_horizontal_(kVelocity, kVelocity) += square(*jump);
   auto horizontal = x_.leftCols<2>();
   auto vertical = x_.rightCols<1>();
 

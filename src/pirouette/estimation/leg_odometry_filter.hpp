@@ -1,6 +1,8 @@
 // Position and velocity of the trunk from accelerometer and legs.
 #pragma once
 
+#include <optional>
+
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/config/config.hpp"
@@ -57,6 +59,9 @@ class LegOdometryFilter {
 
   void predict(const OdometryInput& in, double dt) noexcept;
   void place_lifted_feet(const OdometryInput& in) noexcept;
+  /// m/s, horizontal: by how much the feet that stand firmly agree that the velocity is off; absent
+  /// while it is little, or they do not.
+  std::optional<double> velocity_jump(const OdometryInput& in) const noexcept;
   double noise_factor(double trust) const {
     return 1.0 + config_.swing_noise_factor * (1.0 - trust);
   }

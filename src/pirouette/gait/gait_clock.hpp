@@ -1,6 +1,8 @@
 // The trot's clock: FR with RL, and FL with RR half a stride later.
 #pragma once
 
+#include <algorithm>
+
 #include "pirouette/base/legs.hpp"
 #include "pirouette/config/config.hpp"
 #include "pirouette/types/gait_phase.hpp"
@@ -27,6 +29,10 @@ class GaitClock {
   /// New timing: the period (s) from the next start of the stride on, the duty factor for each leg
   /// from its next touchdown on, so no foot is caught in mid-air. Both at once while standing.
   void set_timing(double period, double duty) noexcept;
+
+  /// A shorter period than the present one takes effect now instead: every foot is as far in its
+  /// stance or swing as it was, and the rest of it goes by faster.
+  void hurry() noexcept { period_ = std::min(period_, next_period_); }
 
  private:
   struct LegState {

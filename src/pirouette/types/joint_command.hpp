@@ -22,7 +22,7 @@ enum class ControllerStatus : int {
   kStanding = 0,  ///< on four feet
   kWalking = 1,
   kFallen = 2,        ///< roll, pitch or height out of bounds: damped stand-down
-  kBadInput = 3,      ///< a sensor value was not finite for too long: damped stand-down
+  kBadInput = 3,      ///< inputs not finite, or sensors dead, for too long: damped stand-down
   kSolverFailed = 4,  ///< MPC or WBC failed too often in a row: damped stand-down
   kBadCommand = 5,    ///< the computed command was not finite: damped stand-down
 };

@@ -28,6 +28,7 @@ struct SwingTarget {
 
 struct TickTrace {
   SensorReading sensors;
+  PerLeg<bool> encoder_stuck{};  ///< what the leg's encoders say is not believed
   ControllerStatus status = ControllerStatus::kStanding;
   RobotState state;
   PerLeg<FootState> feet{};
@@ -79,6 +80,7 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit("joint_velocity", "rad/s", "measured", t.sensors.joint_velocity);
   visit("specific_force_B", "m/s^2", "measured by the accelerometer", t.sensors.specific_force_B);
   visit("gyro_B", "rad/s", "measured by the gyro", t.sensors.w_WB_B);
+  visit("encoder_stuck", "1", "the leg's encoders are not believed", t.encoder_stuck);
   visit("base_position", "m", "estimate of p_WB", t.state.p_WB);
   visit("base_velocity", "m/s", "estimate of v_WB_W", t.state.v_WB_W);
   visit("base_rpy", "rad", "estimate of roll, pitch, unwrapped yaw", rpy(t.state.rpy));
