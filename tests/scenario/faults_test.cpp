@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 
 #include "pirouette/controller/command_guard.hpp"
 #include "pirouette/plant/random.hpp"
@@ -14,7 +13,7 @@ namespace {
 
 using test::ClosedLoop;
 
-constexpr double kFaultStart = 7.0;  ///< s, after a turn and a half quarter of good spinning
+constexpr double kFaultStart = 7.0;  ///< s
 
 struct Endured {
   const char* name;
@@ -110,6 +109,21 @@ TEST(DeadSensor, AnEncoderThatIsNoNumberEndsInTheStandDown) {
   FaultConfig faults;
   faults.encoder = EncoderFault::kNan;
   expect_stand_down(faults, ControllerStatus::kBadInput, 0.03);
+}
+
+TEST(DeadMotor, TheFallEndsInTheStandDown) {
+  Config config = test::spin_config({});
+  config.plant.faults.start = kFaultStart;
+  config.plant.faults.motor_strength = 0.0;
+  ClosedLoop loop(config);
+  loop.run(1.0, test::stand_still());
+  while (!is_stood_down(loop.controller.status()) && loop.plant.truth().time < 12.0)
+    ASSERT_TRUE(test::is_finite(loop.tick(test::spin(0.7))));
+  EXPECT_EQ(loop.controller.status(), ControllerStatus::kFallen);
+  loop.run(3.0, test::spin(0.7));
+  EXPECT_EQ(loop.controller.status(), ControllerStatus::kFallen);
+  EXPECT_TRUE(loop.plant.truth().p_WG.allFinite());
+  EXPECT_LT(loop.plant.truth().v_WG_W.norm(), 0.1);
 }
 
 TEST(LostTicks, AFifthOfTheTicksMayBeMissed) {
