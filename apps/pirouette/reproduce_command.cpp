@@ -40,6 +40,16 @@ void draw(const std::string& folder) {
             << "  PYTHONPATH=python .venv/bin/python -m pirouette.plots " << folder << "\n";
 }
 
+/// Names of the experiments that repeat somebody's, and of those that are wrong.
+std::vector<std::string> with_source() {
+  std::vector<std::string> names = known_experiments();
+  std::erase_if(names, [](const std::string& name) {
+    const Result<Experiment> experiment = load_experiment(experiment_path(name));
+    return experiment && experiment.value().source.empty();
+  });
+  return names;
+}
+
 }  // namespace
 
 ReproduceCommand::ReproduceCommand(CLI::App& app) {
@@ -61,16 +71,15 @@ Result<std::vector<Experiment>> ReproduceCommand::load() const {
       return Error{"reproduce", 0, "", unknown_name(figure_, names)};
     }
     names = {figure_};
+  } else {
+    names = with_source();
   }
   std::vector<Experiment> experiments;
   Errors errors = runner_.check();
   for (const std::string& name : names) {
     Result<Experiment> experiment = load_experiment(experiment_path(name), runner_.changes());
     if (experiment) {
-      const bool of_the_paper = !experiment.value().source.empty();
-      if (of_the_paper || figure_ != "all") {
-        experiments.push_back(std::move(experiment).value());
-      }
+      experiments.push_back(std::move(experiment).value());
       continue;
     }
     for (const Error& error : experiment.errors()) {

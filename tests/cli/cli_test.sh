@@ -192,6 +192,7 @@ wrong 'file' sweep experiment.toml --out file
 wrong 'FIGURE' reproduce
 wrong 'given "fig66"' reproduce fig66
 wrong '--turns: given 0' reproduce fig6 --turns 0
+wrong '--seeds: given 0' reproduce all --seeds 0
 wrong '--profile: given "real"' spin --profile real
 
 # The run folder.
