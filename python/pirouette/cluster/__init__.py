@@ -30,13 +30,12 @@ def main() -> int:
         type=Path,
         metavar="DIR",
         help="folder of results, tables and traces; what is finished there is kept "
-        "[runs/sweep-NAME]",
+        "[runs/sweep-NAME, runs/montecarlo-NAME]",
     )
     changes = parser.add_argument_group("changes, as for sweep and montecarlo")
     for option in ("--turns", "--seeds", "--trials", "--seed"):
         changes.add_argument(option, metavar="N")
     given = parser.parse_args()
-    out = given.out or Path("runs") / f"sweep-{given.file.stem}"
     options = [
         word
         for name in ("turns", "seeds", "trials", "seed")
@@ -44,6 +43,6 @@ def main() -> int:
         for word in (f"--{name}", value)
     ]
     codes: list[int] = []
-    study = Study(given.file, out, tuple(options))
+    study = Study(given.file, given.out, tuple(options))
     failed = command.run(lambda: codes.append(run(study, given.address, given.tasks)))
     return failed or codes[0]

@@ -6,6 +6,7 @@ import re
 import shutil
 import subprocess
 import sys
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -33,14 +34,21 @@ class Study:
     """What `pirouette sweep` or `montecarlo` would run."""
 
     file: Path
-    out: Path
+    folder: Path | None = None  # as the verb's --out, with its default
     options: tuple[str, ...] = ()
 
     @property
     def verb(self) -> str:
-        """Options of the draws belong to montecarlo; it refuses a file that draws nothing."""
-        draws = {"--trials", "--seed"} & set(self.options)
+        """What is wrong with the file, the verb says itself."""
+        try:
+            draws = "trials" in tomllib.loads(self.file.read_text())
+        except (OSError, ValueError):
+            draws = False
         return "montecarlo" if draws else "sweep"
+
+    @property
+    def out(self) -> Path:
+        return self.folder or Path("runs") / f"{self.verb}-{self.file.stem}"
 
 
 def import_ray() -> ModuleType:
