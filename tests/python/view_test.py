@@ -10,7 +10,6 @@ import pytest
 from conftest import ARTEFACTS
 from PIL import Image
 from selenium.webdriver.common.by import By
-from selenium.webdriver.common.keys import Keys
 from selenium.webdriver.support.ui import WebDriverWait
 
 from pirouette.view import assignment
@@ -40,6 +39,7 @@ def as_at_first(view):
     panel.rate.value = 0.7
     panel.radius.value = panel.forwards.value = panel.left.value = 0.0
     panel.friction.value = 0.8
+    panel.strength.value = 0.3
     panel.terrain.value = "flat"
     panel.controller.value = "pirouette"
     panel.paused.value = False
@@ -98,10 +98,12 @@ def test_pause_push_and_reset(view):
 
 
 def test_the_simulation_keeps_real_time(view):
-    start, simulated = time.monotonic(), view.live.simulation.time
+    start, simulated, used = time.monotonic(), view.live.simulation.time, time.process_time()
     time.sleep(2.0)
-    speed = (view.live.simulation.time - simulated) / (time.monotonic() - start)
+    elapsed = time.monotonic() - start
+    speed = (view.live.simulation.time - simulated) / elapsed
     assert 0.5 < speed < 1.1  # less on a busy machine, never more but for a frame
+    assert (time.process_time() - used) / elapsed < 0.5  # of a core: simulation and server
 
 
 def test_the_robot_stays_in_the_middle_and_the_ground_below_it(view):
@@ -177,21 +179,64 @@ def test_the_robot_moves_in_the_picture(page, view):
     assert (np.abs(second - first).max(axis=2) > 40).mean() > 0.003
 
 
-def test_a_slider_of_the_page_acts(page, view):
+# Presses an arrow key on the first slider, calls back with the ms until the status names the rate.
+PRESS = """
+const [rate, done] = arguments;
+const slider = document.querySelector("[role=slider]");
+slider.focus();
+const start = performance.now();
+const observer = new MutationObserver(() => {
+  if (!document.body.innerText.includes(`commanded ${rate} rad/s`)) return;
+  observer.disconnect();
+  done(performance.now() - start);
+});
+observer.observe(document.body, {subtree: true, childList: true, characterData: true});
+slider.dispatchEvent(new KeyboardEvent("keydown", {key: "ArrowRight", bubbles: true}));
+"""
+
+
+def test_the_page_follows_a_slider_within_a_fifth_of_a_second(page, view):
     driver = page.driver
-    slider = driver.find_element(By.CSS_SELECTOR, "[role=slider]")
-    WebDriverWait(driver, PATIENCE).until(lambda _: slider.get_attribute("aria-valuenow") == "0.7")
-    slider.send_keys(Keys.ARROW_RIGHT)
-    delay_until(lambda: view.live.simulation.command.yaw_rate > 0.7)
-    assert view.live.simulation.command.yaw_rate == pytest.approx(0.75)
+    # Few pixels: the software renderer is not what is measured.
+    small = {"width": 500, "height": 400, "deviceScaleFactor": 0.2, "mobile": False}
+    driver.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", small)
+    WebDriverWait(driver, PATIENCE).until(
+        lambda d: d.find_elements(By.CSS_SELECTOR, "[role=slider][aria-valuenow='0.7']")
+    )
+    time.sleep(1.0)  # to lay the page out anew
+    delays = []
+    for i in range(1, 12):
+        rate = round(0.7 + 0.05 * i, 2)
+        delays.append(1e-3 * driver.execute_async_script(PRESS, rate))
+        assert view.live.simulation.command.yaw_rate == pytest.approx(rate)
+        time.sleep(0.3)
+    driver.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
+    # A busy machine adds to some of them, often to more than half: the quicker ones count.
+    delay = np.quantile(delays, 0.25)
+    text = ", ".join(f"{d:.3f}" for d in sorted(delays))
+    (ARTEFACTS / "slider_delay.txt").write_text(f"{delay:.3f} s, lower quartile of {text}\n")
+    assert delay < DELAY
 
 
-def test_keys_steer_and_buttons_reset(page, view):
+def test_keys_steer_push_and_pause(page, view):
     driver, live = page.driver, view.live
     driver.execute_script("document.activeElement.blur()")
-    driver.find_element(By.TAG_NAME, "body").send_keys("i")
+    body = driver.find_element(By.TAG_NAME, "body")
+    body.send_keys("i")
     delay_until(lambda: live.motion.forwards == pytest.approx(0.05))
+    body.send_keys("j")
+    delay_until(lambda: live.motion.rate == pytest.approx(0.8))
     assert live.simulation.command.v_H == [0.05, 0.0]
+    body.send_keys("p")
+    delay_until(lambda: not live.running)
+    before = velocity(live)
+    body.send_keys("n")
+    delay_until(lambda: np.linalg.norm(velocity(live) - before) == pytest.approx(0.3, abs=1e-9))
+
+
+def test_the_pages_button_resets(page, view):
+    driver, live = page.driver, view.live
+    delay_until(lambda: live.simulation.time > 0.5)
     before = live.simulation.time
     button = driver.find_element(By.XPATH, "//button[normalize-space(.)='Reset']")
     driver.execute_script("arguments[0].click()", button)

@@ -1,6 +1,7 @@
 """A simulation that keeps step with the clock and takes changes while it runs."""
 
 import queue
+import threading
 import time
 from collections import deque
 from collections.abc import Callable
@@ -71,15 +72,24 @@ class Live:
         self.radius_meter = RadiusMeter()
         self.rebuilt: Callable[[], None] = lambda: None  # called with every new world
         self._changes: queue.SimpleQueue[Callable[[], None]] = queue.SimpleQueue()
+        self._changed = threading.Event()
         self._clock = self._speed_clock = time.monotonic()
         self._behind = self._speed_start = 0.0
 
     def change(self, what: Callable[[], None]) -> None:
         """Has `what` done between two steps, soon. From any thread."""
         self._changes.put(what)
+        self._changed.set()
 
-    def advance(self) -> None:
-        """Makes the changes that are due and simulates the time since the last call."""
+    def wait(self, timeout: float) -> bool:
+        """Waits for a change, at most so long (s). Whether there is one."""
+        return self._changed.wait(max(0.0, timeout))
+
+    def advance(self) -> bool:
+        """Makes the changes that are due and simulates the time since the last call. Whether there
+        were changes."""
+        changed = self._changed.is_set()
+        self._changed.clear()
         while not self._changes.empty():
             self._changes.get()()
         now = time.monotonic()
@@ -87,13 +97,14 @@ class Live:
         self._clock = now
         if not self.running:
             self._behind = 0.0
-            return
+            return changed
         ticks = int(self._behind / self.simulation.period)
         self._behind -= ticks * self.simulation.period
         self.simulation.step(ticks)
         if now - self._speed_clock > SPEED_TIME:
             self.speed = (self.simulation.time - self._speed_start) / (now - self._speed_clock)
             self._restart_speed()
+        return changed
 
     def _restart_speed(self) -> None:
         self._speed_clock, self._speed_start = time.monotonic(), self.simulation.time

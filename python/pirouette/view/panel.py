@@ -65,6 +65,7 @@ class Panel:
                 uplot.Series(label="mm", stroke=style.colour(0), width=2),
             ),
             scales={"x": uplot.Scale(time=False)},
+            legend=uplot.Legend(show=False),
             title="Radius about the mean of the last turn, mm",
             aspect=2.2,
         )
@@ -167,20 +168,23 @@ class Panel:
 
     def update(self, state: dict[str, Any]) -> None:
         """Status and plot of this moment."""
-        radius = self.live.radius_meter.update(state)
-        if self.times and state["time"] <= self.times[-1]:
-            if not self.live.running:
-                return
-            self.times.clear(), self.radii.clear()  # after a reset
-        self.times.append(state["time"])
+        live = self.live
+        if not self.times or state["time"] != self.times[-1]:
+            self.add_to_plot(state["time"], live.radius_meter.update(state))
+        status = live.simulation.status.name.lower().replace("_", " ")
+        if live.simulation.stood_down:
+            status = f"**{status}: press Reset**"
+        self.status.content = (
+            f"{status}, commanded {live.motion.rate:g} rad/s, {state['time']:.1f} s, "
+            f"{live.speed:.2f} x real time, radius {1e3 * self.radii[-1]:.1f} mm"
+        )
+
+    def add_to_plot(self, time: float, radius: float) -> None:
+        """A point (s, m); a time that went back is that after a reset."""
+        if self.times and time < self.times[-1]:
+            self.times.clear(), self.radii.clear()
+        self.times.append(time)
         self.radii.append(radius)
         while self.times[-1] - self.times[0] > PLOT_TIME:
             self.times.popleft(), self.radii.popleft()
         self.plot.data = self.curve()
-        status = self.live.simulation.status.name.lower().replace("_", " ")
-        if self.live.simulation.stood_down:
-            status = f"**{status}: press Reset**"
-        self.status.content = (
-            f"{status}, {state['time']:.1f} s, {self.live.speed:.2f} x real time, "
-            f"radius {1e3 * radius:.1f} mm"
-        )

@@ -33,13 +33,14 @@ class View:
     def run(self, stop: threading.Event) -> None:
         """Simulates in real time until `stop` is set."""
         frame, due = 0, time.monotonic()
-        while not stop.wait(max(0.0, due - time.monotonic())):
-            due = max(due + FRAME_TIME, time.monotonic())
-            self.live.advance()
+        while not stop.is_set():
+            if not self.live.wait(due - time.monotonic()):
+                due = max(due + FRAME_TIME, time.monotonic())
+            changed = self.live.advance()
             with self.server.atomic():
                 state = self.live.simulation.state
                 self.world.show(state, self.panel.follow.value)
-                if frame % FRAMES_PER_UPDATE == 0:
+                if changed or frame % FRAMES_PER_UPDATE == 0:
                     self.panel.update(state)
             frame += 1
 
