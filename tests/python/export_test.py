@@ -39,7 +39,9 @@ def messages(spin_folder, tmp_path_factory):
 
 def test_every_row_of_the_trace_is_a_message_of_every_topic(messages, run):
     expected = [round(time * 1e9) for time in run.trace["time"]]
-    assert all(times == expected for times, _, _ in messages.values())
+    topics = messages.keys() - {"/scene"}
+    assert len(topics) == 7
+    assert all(messages[topic][0] == expected for topic in topics)
 
 
 def test_topics_carry_foxglove_schemas(messages):
@@ -73,6 +75,18 @@ def test_transforms_chain_from_the_world_to_the_shank(messages, run):
     for _ in range(4):
         frame = parents[frame]
     assert frame == "world"
+
+
+def test_the_scene_holds_robot_and_ground_in_frames_of_the_transforms(messages, run):
+    times, (scene,), schemas = messages["/scene"]
+    assert (times, schemas) == ([0], {"foxglove.SceneUpdate"})
+    frames = {t.child_frame_id for t in messages["/tf"][1][0].transforms}
+    bodies = {entity.frame_id: entity for entity in scene.entities}
+    assert bodies.keys() - frames == {"world"}
+    assert {"trunk", "FR_thigh", "RL_shank"} <= bodies.keys()
+    reach = [point.x for part in bodies["trunk"].triangles for point in part.points]
+    assert np.ptp(reach) == pytest.approx(0.354, abs=0.01)  # m, with the motors
+    assert all(max(part.indices) < len(part.points) for part in bodies["world"].triangles)
 
 
 @pytest.mark.parametrize(

@@ -4,6 +4,7 @@
     /joint_states  foxglove.JointStates      truth
     /trunk/true, /trunk/estimate, /com/true, /com/plan
                    foxglove.PoseInFrame
+    /scene         foxglove.SceneUpdate      robot and ground, once, at the start
     /trace         JSON with a schema        every column of trace.npy
 
 Message times are simulated time, from 0.
@@ -15,7 +16,12 @@ from pathlib import Path
 import foxglove
 import mujoco
 import numpy as np
-from foxglove.channels import FrameTransformsChannel, JointStatesChannel, PoseInFrameChannel
+from foxglove.channels import (
+    FrameTransformsChannel,
+    JointStatesChannel,
+    PoseInFrameChannel,
+    SceneUpdateChannel,
+)
 from foxglove.messages import (
     FrameTransform,
     FrameTransforms,
@@ -28,6 +34,7 @@ from foxglove.messages import (
     Vector3,
 )
 
+from pirouette.export.shapes import scene
 from pirouette.robot import Poser, load_model
 from pirouette.run_folder import Run
 
@@ -96,6 +103,7 @@ class Recorder:
         self.run = run
         self.poser = Poser(load_model(run))
         self.transforms = FrameTransformsChannel("/tf", context=context)
+        self.scene = SceneUpdateChannel("/scene", context=context)
         self.joints = JointStatesChannel("/joint_states", context=context)
         self.poses = {
             topic: PoseInFrameChannel(topic, context=context)
@@ -104,6 +112,11 @@ class Recorder:
         self.trace = foxglove.Channel(
             "/trace", schema=trace_schema(run.trace.dtype), context=context
         )
+
+    def log_scene(self) -> None:
+        start = self.run.trace["time"][0]
+        message = scene(self.run, self.poser, WORLD, stamp(start))
+        self.scene.log(message, log_time=nanoseconds(start))
 
     def log(self, row: np.void) -> None:
         at = nanoseconds(row["time"])
@@ -173,5 +186,6 @@ def write_mcap(run: Run, file: Path) -> None:
     context = foxglove.Context()
     recorder = Recorder(run, context)
     with foxglove.open_mcap(file, context=context):
+        recorder.log_scene()
         for row in run.trace:
             recorder.log(row)
