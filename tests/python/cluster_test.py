@@ -108,6 +108,13 @@ def test_a_wrong_experiment_is_refused_as_by_the_program(program, tmp_path):
         run(Study(tmp_path / "wrong.toml", tmp_path / "out"), "local", None)
 
 
+@pytest.mark.parametrize("address", ["127.0.0.1:1", "127.0.0.1:port", "here"])
+def test_an_address_where_nobody_answers_is_refused_at_once(program, experiment, tmp_path, address):
+    study = Study(experiment / "tiny.toml", tmp_path / "out")
+    with pytest.raises(Error, match=f"--address: given '{address}'"):
+        run(study, address, None)
+
+
 def test_without_ray_one_line_says_how_to_install_it(monkeypatch):
     monkeypatch.setitem(sys.modules, "ray", None)
     with pytest.raises(Error) as raised:

@@ -4,6 +4,7 @@ import fcntl
 import os
 import re
 import shutil
+import socket
 import subprocess
 import sys
 import tomllib
@@ -26,6 +27,7 @@ NO_RAY = (
 )
 SOURCE_TREE = Path(__file__).resolve().parents[3]
 TASKS_PER_CPU = 4  # so that no processor waits long for the last task
+ANSWER_TIME = 5.0  # s
 TRIALS_PER_TASK = 50  # at most, as an interruption loses those of the running tasks
 
 
@@ -137,6 +139,19 @@ def run_tasks(ray: ModuleType, work: Work, tasks: int, out: Path) -> None:
             print(f"{tasks - len(waiting)} of {tasks} tasks", file=sys.stderr)
 
 
+def check_address(address: str) -> None:
+    """Ray itself tries for minutes. Raises Error when nobody answers at HOST:PORT."""
+    host, colon, port = address.removeprefix("ray://").rpartition(":")
+    if not colon:
+        if address in ("local", "auto"):
+            return
+        raise Error(f"--address: given {address!r}; allowed: local, auto, HOST:PORT")
+    try:
+        socket.create_connection((host, int(port)), ANSWER_TIME).close()
+    except (OSError, ValueError, OverflowError) as error:
+        raise Error(f"--address: given {address!r}: no cluster answers there ({error})") from None
+
+
 def run(study: Study, address: str, tasks: int | None) -> int:
     """Runs what is not finished, then writes the tables; exit code of the program."""
     if tasks is not None and tasks < 1:
@@ -144,6 +159,7 @@ def run(study: Study, address: str, tasks: int | None) -> int:
     program = find_program()
     trials = unfinished(program, study)
     if trials > 0:
+        check_address(address)
         ray = import_ray()
         work = Work(
             program=program,
