@@ -1,8 +1,12 @@
 """What is wrong with a run is said in one line, and nothing is left half-made."""
 
 import json
+import os
+import subprocess
+import sys
 
 import pytest
+from conftest import ROOT
 
 
 def cut(run):
@@ -94,3 +98,24 @@ def test_output_into_no_folder_is_refused(call, own_run, tmp_path):
     assert result.returncode == 2
     assert "there is no folder" in result.stderr
     assert not (tmp_path / "nowhere").exists()
+
+
+def test_a_picture_that_cannot_be_written_leaves_no_report(call, own_run, tmp_path):
+    result = call("report", own_run, "--picture", tmp_path / "nowhere" / "run.png")
+    assert result.returncode == 2
+    assert "there is no folder" in result.stderr
+    assert not (own_run / "report.html").exists()
+
+
+def test_a_missing_renderer_is_one_clear_error(own_run, tmp_path):
+    out = tmp_path / "run.mp4"
+    result = subprocess.run(
+        [sys.executable, "-m", "pirouette.export", own_run, "--video", out],
+        capture_output=True,
+        text=True,
+        env=os.environ | {"PYTHONPATH": str(ROOT / "python"), "MUJOCO_GL": "disable"},
+    )
+    assert result.returncode == 2
+    assert result.stderr.startswith("error: MUJOCO_GL=disable: ")
+    assert "allowed: egl" in result.stderr
+    assert list(tmp_path.glob("*.mp4")) == []
