@@ -116,6 +116,21 @@ TEST(FootholdPlanner, FeedbackStepsIntoTheVelocityError) {
   EXPECT_LT(distance(shift, Vec2((0.15 + 0.03) * in.v_WG_H)), 1e-15);
 }
 
+TEST(FootholdPlanner, AQuickStepGoesToTheCapturePoint) {
+  FootholdInput in = spin_input(0.0);
+  in.v_WG_H = {0.1, -0.05};
+  in.gait.stance_duration = 0.1;
+  const FootholdPlan resting = [&] {
+    FootholdInput still = in;
+    still.v_WG_H.setZero();
+    return FootholdPlanner({}).update(still);
+  }();
+  in.capture_time = 0.166;
+  const Vec2 shift =
+      (FootholdPlanner({}).update(in)[Leg::kFR].p_WC - resting[Leg::kFR].p_WC).head<2>();
+  EXPECT_LT(distance(shift, Vec2(0.166 * in.v_WG_H)), 1e-15);
+}
+
 TEST(FootholdPlanner, FootholdsStayWithinReachOfTheirNominalPoint) {
   FootholdInput in = spin_input(0.7);
   in.v_WG_H = {5.0, -3.0};

@@ -122,7 +122,8 @@ struct SpinController::Impl {
 
   BasePose start;
   bool started = false;
-  int mpc_failures = 0;  ///< solutions in a row
+  bool recovering = false;  ///< from a push
+  int mpc_failures = 0;     ///< solutions in a row
   int wbc_failures = 0;
   int ticks_until_mpc = 0;
   PerLeg<bool> solved_contacts{};  ///< contact set of the last MPC solution
@@ -136,7 +137,7 @@ struct SpinController::Impl {
 
 void SpinController::Impl::reset(const BasePose& pose) {
   start = pose;
-  started = false;
+  started = recovering = false;
   trace = TickTrace{};
   timing = TickTiming{};
   mpc_failures = wbc_failures = ticks_until_mpc = 0;
@@ -181,17 +182,17 @@ double SpinController::Impl::com_height_above_plane() const {
 }
 
 /// Duty and stride by rule: the yaw rate shortens the stride, steps lengthen the stance; both take
-/// effect at the next touchdown. A push shortens the stride at once.
+/// effect at the next touchdown. A push shortens the stride at once, and sets the feet on the
+/// capture point (plan_feet).
 void SpinController::Impl::set_gait(const MotionCommand& command, double dt) {
   const GaitConfig& gait = config.gait;
   const bool careful = gait.adapt && trace.ground.stepped;
   const Vec2 v_error = (trace.state.v_WG_W - trace.reference.v_WG_W).head<2>();
-  const bool pushed =
-      push_recovery.update(v_error, dt) && trace.gait.walking && gait.adapt && !careful;
+  recovering = push_recovery.update(v_error, dt) && trace.gait.walking && gait.adapt && !careful;
   const double yaw_rate = command.yaw_rate;
-  clock.set_timing(pushed ? gait.recovery_period_at(yaw_rate) : gait.period_at(yaw_rate),
+  clock.set_timing(recovering ? gait.recovery_period_at(yaw_rate) : gait.period_at(yaw_rate),
                    careful ? std::max(gait.duty, gait.step_duty) : gait.duty);
-  if (pushed) clock.hurry();
+  if (recovering) clock.hurry();
   trace.gait = clock.update(command.walk, dt);
   trace.status = trace.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
 }
@@ -234,6 +235,7 @@ void SpinController::Impl::plan_feet(double dt) {
   in.p_WG = state.p_WG.head<2>();
   in.v_WG_H = rot2(state.rpy.yaw).transpose() * state.v_WG_W.head<2>();
   in.yaw = state.rpy.yaw;
+  if (recovering) in.capture_time = std::sqrt(config.body.height / kGravity);
   in.twist = trace.twist;
   in.plane = trace.plane;
   if (config.foothold.rolling_compensation && foot.radius() > 0.0) {

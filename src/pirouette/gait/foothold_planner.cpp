@@ -1,5 +1,6 @@
 #include "pirouette/gait/foothold_planner.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "pirouette/base/rotation.hpp"
@@ -23,10 +24,9 @@ Vec2 turning_foothold(const Vec2& hip, const Vec2& v, double yaw_rate, double t)
 FootholdPlan FootholdPlanner::update(const FootholdInput& in) const noexcept {
   // Raibert's law: the half stance after touchdown is foreseen with the measured velocity, not the
   // commanded one, and the gain adds to that.
-  const Vec2 feedback_H = config_.feedback
-                              ? Vec2((0.5 * in.gait.stance_duration + config_.velocity_gain) *
-                                     (in.v_WG_H - in.twist.v_H))
-                              : Vec2::Zero();
+  const double lead =
+      std::max(0.5 * in.gait.stance_duration + config_.velocity_gain, in.capture_time);
+  const Vec2 feedback_H = config_.feedback ? Vec2(lead * (in.v_WG_H - in.twist.v_H)) : Vec2::Zero();
   const Vec3 n_W = in.plane.normal();
 
   FootholdPlan plan;

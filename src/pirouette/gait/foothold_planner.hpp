@@ -27,6 +27,9 @@ struct FootholdInput {
   Vec2 p_WG = Vec2::Zero();    ///< m, CoM
   Vec2 v_WG_H = Vec2::Zero();  ///< m/s, measured velocity of the CoM, heading axes
   double yaw = 0.0;            ///< rad
+  /// s, least lead with which footholds follow the velocity error: sqrt(height / g), of a linear
+  /// inverted pendulum, puts them at the capture point. 0: Raibert's law alone.
+  double capture_time = 0.0;
   TwistCommand twist;
   TerrainPlane plane;
 };
