@@ -252,6 +252,19 @@ TEST(FootholdMemory, FollowsADriftOfTheOdometryByForgetting) {
   }
 }
 
+TEST(FootholdMemory, WhereOldHeightsContradictNewOnesTheNewAreAskedAlone) {
+  const Ground ground = stairs(0.03, 0.2);
+  const auto lowered = [&](const Vec2& p) { return ground(p) - 0.014; };
+  std::vector<Vec3> contacts = footholds(lowered, 25);
+  const std::vector<Vec3> now = footholds(ground, 15);
+  contacts.insert(contacts.end(), now.begin(), now.end());
+  const FootholdMemory memory = remembering(contacts);
+  ASSERT_EQ(memory.tread_count(), 3u);
+  const auto known = memory.at({0.0, 0.15});
+  ASSERT_TRUE(known.has_value());
+  EXPECT_NEAR(known->height, 0.0, 1e-3);
+}
+
 TEST(FootholdMemory, ItsPlaneIsLeastSquaresThroughTheFeetAroundTheRobot) {
   FootholdMemory memory{TerrainConfig{}};
   const std::vector<Vec3> contacts = footholds(slope(0.3), 10);

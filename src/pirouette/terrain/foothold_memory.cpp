@@ -13,6 +13,7 @@ constexpr double kMinFootholds = 24.0;  // for a plane: three strides of four le
 constexpr double kNear = 0.5;           // m, around the robot
 constexpr double kMaxFromGradient = 0.5;  // rad, that the climb may differ from the gradient
 constexpr double kMinGradient = 0.03;     // below it there is no direction to climb
+constexpr std::size_t kFewestAlone = 40;  // ten strides of four legs
 constexpr int kMinFootholdsPerTread = 3;  // fewer are feet on edges
 constexpr double kMaxResidual = 0.004;    // m, rms about the treads; more is no flight of stairs
 constexpr double kReach = 0.05;  // m, beyond the outermost footholds that a tread is taken to go on
@@ -34,16 +35,9 @@ void FootholdMemory::add(const Vec3& p_WC, const Vec2& p_WG) noexcept {
   valid_ = false;
   fit_around(p_WG);
   if (!find_climb()) return;
-  constexpr double kTurn = 0.02;  // rad, tried to both sides at each foothold
-  double best = *climb_;
-  double least = sort_along(best);
-  for (const double tried : {*climb_ - kTurn, *climb_ + kTurn}) {
-    const double jumps = sort_along(tried);
-    if (jumps < least) least = jumps, best = tried;
-  }
-  climb_ = best;
-  sort_along(best);
-  find_treads();
+  // The odometry's height drifts: where old footholds contradict new ones, the new are asked alone.
+  find_treads(count());
+  for (std::size_t n = count() / 2; !valid_ && n >= kFewestAlone; n /= 2) find_treads(n);
 }
 
 void FootholdMemory::fit_around(const Vec2& p_WG) noexcept {
@@ -68,11 +62,11 @@ bool FootholdMemory::find_climb() noexcept {
   return true;
 }
 
-double FootholdMemory::sort_along(double direction) noexcept {
+double FootholdMemory::sort_along(double direction, std::size_t n) noexcept {
   const Vec2 uphill = unit_vector(direction);
-  const std::size_t n = count();
   for (std::size_t i = 0; i < n; ++i) {
-    sorted_[i] = {uphill.dot(footholds_[i].head<2>()), footholds_[i].z()};
+    const Vec3& foothold = footholds_[(added_ - 1 - i) % kCapacity];
+    sorted_[i] = {uphill.dot(foothold.head<2>()), foothold.z()};
   }
   std::sort(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n),
             [](const Sample& a, const Sample& b) { return a.along < b.along; });
@@ -81,8 +75,20 @@ double FootholdMemory::sort_along(double direction) noexcept {
   return jumps;
 }
 
-void FootholdMemory::find_treads() noexcept {
-  const std::size_t n = count();
+void FootholdMemory::turn_climb(std::size_t n) noexcept {
+  constexpr double kTurn = 0.02;  // rad, tried to both sides
+  double best = *climb_;
+  double least = sort_along(best, n);
+  for (const double tried : {*climb_ - kTurn, *climb_ + kTurn}) {
+    const double jumps = sort_along(tried, n);
+    if (jumps < least) least = jumps, best = tried;
+  }
+  climb_ = best;
+  sort_along(best, n);
+}
+
+void FootholdMemory::find_treads(std::size_t n) noexcept {
+  turn_climb(n);
   tread_count_ = 0;
   std::size_t kept = 0;
   double squares = 0.0;

@@ -59,10 +59,13 @@ class FootholdMemory {
   std::size_t count() const { return std::min(added_, kCapacity); }
   void fit_around(const Vec2& p_WG) noexcept;
   bool find_climb() noexcept;
-  /// m^2, sum of the squared jumps of the heights in their order along `direction` (rad), in which
-  /// it leaves sorted_.
-  double sort_along(double direction) noexcept;
-  void find_treads() noexcept;
+  /// m^2, sum of the squared jumps of the newest `n` heights in their order along `direction`
+  /// (rad), in which it leaves sorted_.
+  double sort_along(double direction, std::size_t n) noexcept;
+  /// Turns climb_ to where these heights jump less, and leaves them sorted along it.
+  void turn_climb(std::size_t n) noexcept;
+  /// Treads of the newest `n` footholds.
+  void find_treads(std::size_t n) noexcept;
   double lower_edge(std::size_t tread) const noexcept;
   double upper_edge(std::size_t tread) const noexcept;
 
