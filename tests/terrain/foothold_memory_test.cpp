@@ -255,8 +255,8 @@ TEST(FootholdMemory, FollowsADriftOfTheOdometryByForgetting) {
 TEST(FootholdMemory, WhereOldHeightsContradictNewOnesTheNewAreAskedAlone) {
   const Ground ground = stairs(0.03, 0.2);
   const auto lowered = [&](const Vec2& p) { return ground(p) - 0.014; };
-  std::vector<Vec3> contacts = footholds(lowered, 25);
-  const std::vector<Vec3> now = footholds(ground, 15);
+  std::vector<Vec3> contacts = footholds(lowered, 20);
+  const std::vector<Vec3> now = footholds(ground, 20);
   contacts.insert(contacts.end(), now.begin(), now.end());
   const FootholdMemory memory = remembering(contacts);
   ASSERT_EQ(memory.tread_count(), 3u);

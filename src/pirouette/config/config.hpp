@@ -413,7 +413,7 @@ struct MpcConfig {
   double friction = 0.6;
   double max_normal_force = 150.0;
   double min_normal_force = 0.0;
-  int max_iterations = 50;
+  int max_iterations = 100;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {

@@ -13,7 +13,7 @@ constexpr double kMinFootholds = 24.0;  // for a plane: three strides of four le
 constexpr double kNear = 0.5;           // m, around the robot
 constexpr double kMaxFromGradient = 0.5;  // rad, that the climb may differ from the gradient
 constexpr double kMinGradient = 0.03;     // below it there is no direction to climb
-constexpr std::size_t kFewestAlone = 40;  // ten strides of four legs
+constexpr std::size_t kFewestAlone = 60;  // fifteen strides of four legs
 constexpr int kMinFootholdsPerTread = 3;  // fewer are feet on edges
 constexpr double kMaxResidual = 0.004;    // m, rms about the treads; more is no flight of stairs
 constexpr double kReach = 0.05;  // m, beyond the outermost footholds that a tread is taken to go on
@@ -35,9 +35,10 @@ void FootholdMemory::add(const Vec3& p_WC, const Vec2& p_WG) noexcept {
   valid_ = false;
   fit_around(p_WG);
   if (!find_climb()) return;
-  // The odometry's height drifts: where old footholds contradict new ones, the new are asked alone.
+  turn_climb();
   find_treads(count());
-  for (std::size_t n = count() / 2; !valid_ && n >= kFewestAlone; n /= 2) find_treads(n);
+  // The odometry's height drifts: where old footholds contradict new ones, the new are asked alone.
+  if (!valid_ && count() / 2 >= kFewestAlone) find_treads(count() / 2);
 }
 
 void FootholdMemory::fit_around(const Vec2& p_WG) noexcept {
@@ -64,9 +65,10 @@ bool FootholdMemory::find_climb() noexcept {
 
 double FootholdMemory::sort_along(double direction, std::size_t n) noexcept {
   const Vec2 uphill = unit_vector(direction);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Vec3& foothold = footholds_[(added_ - 1 - i) % kCapacity];
-    sorted_[i] = {uphill.dot(foothold.head<2>()), foothold.z()};
+  std::size_t found = 0;
+  for (std::size_t i = 0; i < count(); ++i) {
+    const std::size_t age = (added_ - 1 - i) % kCapacity;
+    if (age < n) sorted_[found++] = {uphill.dot(footholds_[i].head<2>()), footholds_[i].z()};
   }
   std::sort(sorted_.begin(), sorted_.begin() + static_cast<std::ptrdiff_t>(n),
             [](const Sample& a, const Sample& b) { return a.along < b.along; });
@@ -75,20 +77,19 @@ double FootholdMemory::sort_along(double direction, std::size_t n) noexcept {
   return jumps;
 }
 
-void FootholdMemory::turn_climb(std::size_t n) noexcept {
+void FootholdMemory::turn_climb() noexcept {
   constexpr double kTurn = 0.02;  // rad, tried to both sides
   double best = *climb_;
-  double least = sort_along(best, n);
+  double least = sort_along(best, count());
   for (const double tried : {*climb_ - kTurn, *climb_ + kTurn}) {
-    const double jumps = sort_along(tried, n);
+    const double jumps = sort_along(tried, count());
     if (jumps < least) least = jumps, best = tried;
   }
   climb_ = best;
-  sort_along(best, n);
 }
 
 void FootholdMemory::find_treads(std::size_t n) noexcept {
-  turn_climb(n);
+  sort_along(*climb_, n);
   tread_count_ = 0;
   std::size_t kept = 0;
   double squares = 0.0;

@@ -62,8 +62,8 @@ class FootholdMemory {
   /// m^2, sum of the squared jumps of the newest `n` heights in their order along `direction`
   /// (rad), in which it leaves sorted_.
   double sort_along(double direction, std::size_t n) noexcept;
-  /// Turns climb_ to where these heights jump less, and leaves them sorted along it.
-  void turn_climb(std::size_t n) noexcept;
+  /// Turns climb_ a little to where the heights jump less.
+  void turn_climb() noexcept;
   /// Treads of the newest `n` footholds.
   void find_treads(std::size_t n) noexcept;
   double lower_edge(std::size_t tread) const noexcept;
