@@ -7,13 +7,13 @@ using pirouette::Config;
 using pirouette::Result;
 using pirouette::fuzz::InputFile;
 using pirouette::fuzz::require;
+using pirouette::fuzz::require_reasons;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const InputFile file(".toml");
   const Result<Config> config = pirouette::load_config({.file = file.write(data, size)});
   if (!config) {
-    require(!config.errors().empty(), "a refusal has a reason");
-    for (const auto& error : config.errors()) require(!error.message.empty(), "errors have words");
+    require_reasons(config);
     return 0;
   }
   const std::string dump = pirouette::dump_toml(config.value());

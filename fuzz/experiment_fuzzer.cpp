@@ -6,6 +6,7 @@ using pirouette::Experiment;
 using pirouette::Result;
 using pirouette::fuzz::InputFile;
 using pirouette::fuzz::require;
+using pirouette::fuzz::require_reasons;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const InputFile file(".toml");
@@ -16,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       require(trial.row < experiment.value().rows.size(), "every trial belongs to a row");
     }
   } else {
-    require(!experiment.errors().empty(), "a refusal has a reason");
+    require_reasons(experiment);
   }
   return 0;
 }

@@ -9,6 +9,8 @@
 #include <filesystem>
 #include <string>
 
+#include "pirouette/base/result.hpp"
+
 namespace pirouette::fuzz {
 
 /// A file of this process, in memory where the system has such a folder, rewritten for each input.
@@ -41,6 +43,13 @@ inline void require(bool holds, const char* what) {
   if (holds) return;
   std::fprintf(stderr, "does not hold: %s\n", what);
   std::abort();
+}
+
+/// What is refused is refused in words.
+template <class T>
+void require_reasons(const Result<T>& refused) {
+  require(!refused.errors().empty(), "a refusal has a reason");
+  for (const Error& error : refused.errors()) require(!error.message.empty(), "errors have words");
 }
 
 }  // namespace pirouette::fuzz

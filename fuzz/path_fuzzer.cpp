@@ -11,12 +11,13 @@ using pirouette::PathSample;
 using pirouette::Result;
 using pirouette::fuzz::InputFile;
 using pirouette::fuzz::require;
+using pirouette::fuzz::require_reasons;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const InputFile file(".toml");
   const Result<PathFile> loaded = pirouette::load_path_file(file.write(data, size));
   if (!loaded) {
-    require(!loaded.errors().empty(), "a refusal has a reason");
+    require_reasons(loaded);
     return 0;
   }
   const PathFile& in = loaded.value();

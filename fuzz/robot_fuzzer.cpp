@@ -11,12 +11,13 @@ using pirouette::Result;
 using pirouette::RobotModel;
 using pirouette::fuzz::InputFile;
 using pirouette::fuzz::require;
+using pirouette::fuzz::require_reasons;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const InputFile file(".xml");
   const Result<RobotModel> robot = RobotModel::load(file.write(data, size).string());
   if (!robot) {
-    require(!robot.errors().empty(), "a refusal has a reason");
+    require_reasons(robot);
     return 0;
   }
   require(std::isfinite(robot.value().mass()) && robot.value().mass() > 0.0, "a robot has a mass");

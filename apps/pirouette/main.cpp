@@ -14,7 +14,6 @@
 
 #include "config_command.hpp"
 #include "exit_code.hpp"
-#include "montecarlo_command.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/experiment/replay.hpp"
 #include "pirouette/experiment/trial.hpp"
@@ -107,8 +106,8 @@ int run(int argc, char** argv) {
   const std::string command_line = shell_line(argc, argv);
   const RunCommand spin(app, RunCommand::Kind::kSpin, command_line);
   const RunCommand turn(app, RunCommand::Kind::kTurn, command_line);
-  const SweepCommand sweep(app);
-  const MontecarloCommand montecarlo(app);
+  const SweepCommand sweep(app, SweepCommand::Kind::kSweep);
+  const SweepCommand montecarlo(app, SweepCommand::Kind::kMontecarlo);
   const ReproduceCommand reproduce(app);
   const ConfigCommand config(app);
 

@@ -1,4 +1,4 @@
-// pirouette sweep: the trials of an experiment file.
+// pirouette sweep and pirouette montecarlo: the trials of an experiment file.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -10,12 +10,16 @@ namespace pirouette::app {
 
 class SweepCommand {
  public:
-  explicit SweepCommand(CLI::App& app);
+  /// kMontecarlo: the file draws its parameters, and the report counts survivors.
+  enum class Kind { kSweep, kMontecarlo };
+
+  SweepCommand(CLI::App& app, Kind kind);
 
   bool chosen() const { return command_->parsed(); }
   int run() const;
 
  private:
+  Kind kind_;
   CLI::App* command_;
   std::string file_;
   SweepRunner runner_;

@@ -5,17 +5,14 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import PROGRAM
+from conftest import PROGRAM, QUICK_TRIALS
 
 from pirouette.cluster.driver import NO_RAY, Study, import_ray, known_results, run
 from pirouette.errors import Error
 
-EXPERIMENT = """
+EXPERIMENT = f"""
 seeds = [1, 2, 3]
-[common]
-run.turns = 0.02
-run.settle_time = 0.1
-gait.stand_time = 0.2
+{QUICK_TRIALS}
 [[rows]]
 label = "one"
 controller = "asc"
@@ -25,14 +22,11 @@ values = [0.6, 0.8]
 [trace]
 plant.friction = 0.8
 """
-RANDOM = """
+RANDOM = f"""
 trials = 5
-[common]
-run.turns = 0.02
-run.settle_time = 0.1
-gait.stand_time = 0.2
+{QUICK_TRIALS}
 [random]
-plant.friction = {uniform = [0.4, 1.0]}
+plant.friction = {{uniform = [0.4, 1.0]}}
 [[rows]]
 label = "one"
 controller = "asc"

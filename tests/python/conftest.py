@@ -17,6 +17,11 @@ os.environ.setdefault(
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = Path(os.environ.get("PIROUETTE", ROOT / "build/release/pirouette"))
 ARTEFACTS = ROOT / "build/artefacts"
+# The [common] part of an experiment whose trials take a tenth of a second.
+QUICK_TRIALS = """[common]
+run.turns = 0.02
+run.settle_time = 0.1
+gait.stand_time = 0.2"""
 
 
 @pytest.fixture(scope="session")

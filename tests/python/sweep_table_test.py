@@ -6,18 +6,15 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.parquet
 import pytest
-from conftest import PROGRAM
+from conftest import PROGRAM, QUICK_TRIALS
 
 from pirouette.export import write
 from pirouette.export.study import read_table
 from pirouette.run_folder import RunError
 
-EXPERIMENT = """
+EXPERIMENT = f"""
 seeds = [1, 2]
-[common]
-run.turns = 0.02
-run.settle_time = 0.1
-gait.stand_time = 0.2
+{QUICK_TRIALS}
 [[rows]]
 label = 'a "quoted", label'
 controller = "asc"

@@ -16,6 +16,11 @@ constexpr double kMaxPositionVariance = 1.0;
 constexpr double kFirmTrust = 0.999;     // of a foot in the middle of its stance
 constexpr double kLargestDissent = 0.5;  // of a foot from the feet's mean, as a share of that
 
+bool stands_firmly(const FootOdometry& foot) { return foot.trust >= kFirmTrust; }
+
+/// m/s, the trunk's velocity that a foot on the ground tells of.
+Vec3 measured_velocity(const FootOdometry& foot) { return foot.v_WF_stance_W - foot.v_BF_W; }
+
 constexpr int foot_state(Leg leg) { return 2 + static_cast<int>(index(leg)); }
 
 /// Scalar measurement updates are exact because the measurement noise is diagonal. `h` selects
@@ -76,9 +81,8 @@ std::optional<double> LegOdometryFilter::velocity_jump(const OdometryInput& in) 
   Vec2 mean = Vec2::Zero();
   int firm = 0;
   for (const Leg leg : kLegs) {
-    const FootOdometry& foot = in.foot[leg];
-    if (foot.trust < kFirmTrust) continue;
-    const Vec3 v_measured = foot.v_WF_stance_W - foot.v_BF_W;
+    if (!stands_firmly(in.foot[leg])) continue;
+    const Vec3 v_measured = measured_velocity(in.foot[leg]);
     error_xy[leg] = v_measured.head<2>() - x_.row(kVelocity).head<2>().transpose();
     mean += error_xy[leg];
     ++firm;
@@ -87,9 +91,8 @@ std::optional<double> LegOdometryFilter::velocity_jump(const OdometryInput& in) 
   mean /= firm;
   if (mean.norm() < config_.velocity_jump) return std::nullopt;
   for (const Leg leg : kLegs) {
-    const bool counts = in.foot[leg].trust >= kFirmTrust;
-    if (counts && (error_xy[leg] - mean).norm() > kLargestDissent * mean.norm())
-      return std::nullopt;
+    if (!stands_firmly(in.foot[leg])) continue;
+    if ((error_xy[leg] - mean).norm() > kLargestDissent * mean.norm()) return std::nullopt;
   }
   return mean.norm();
 }
@@ -107,7 +110,7 @@ OdometryEstimate LegOdometryFilter::update(const OdometryInput& in, double dt) n
     if (foot.trust <= 0.0) continue;
     const double factor = noise_factor(foot.trust);
     const Vec3 p_relative = -foot.p_BF_W;
-    const Vec3 v_measured = -foot.v_BF_W + foot.v_WF_stance_W;
+    const Vec3 v_measured = measured_velocity(foot);
     const auto update_axes = [&](auto& P, auto&& x, auto axes) {
       update_scalar<kStates>(P, x, kPosition, foot_state(leg), axes(p_relative),
                              config_.measurement_position);
