@@ -10,7 +10,8 @@ using pirouette::fuzz::require_reasons;
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   static const InputFile file(".toml");
-  const Result<Experiment> experiment = pirouette::load_experiment(file.write(data, size));
+  const Result<Experiment> experiment =
+      pirouette::load_experiment(file.write(data, size), {.max_trials = 1000});
   if (experiment) {
     require(!experiment.value().trials.empty(), "an experiment has trials");
     for (const auto& trial : experiment.value().trials) {

@@ -242,6 +242,28 @@ TEST_F(ExperimentFiles, NameWhatIsWrongWithTheExperimentItself) {
             "24: trace.plant.torsional_friction: given 0.03; allowed: a value of an axis");
 }
 
+TEST_F(ExperimentFiles, RefuseMoreTrialsThanAnyoneCanRun) {
+  std::string axes;
+  for (const char* key : {"run.rate", "plant.friction", "gait.duty", "gait.swing_height"}) {
+    axes += "[[axes]]\nkey = \"" + std::string(key) + "\"\nvalues = [0.5";
+    for (int i = 0; i < 99; ++i) axes += ", 0.5";
+    axes += "]\n";
+  }
+  const Result<Experiment> many = load(kGood + axes);
+  ASSERT_FALSE(many);
+  EXPECT_EQ(many.errors().front().to_string(),
+            file().string() + ": makes 1.6e9 trials; allowed: at most 1000000");
+  const Result<Experiment> sixteen = load(kGood, {.max_trials = 15});
+  ASSERT_FALSE(sixteen);
+  EXPECT_EQ(sixteen.errors().front().to_string(),
+            file().string() + ": makes 16 trials; allowed: at most 15");
+  EXPECT_TRUE(load(kGood, {.max_trials = 16}));
+}
+
+TEST_F(ExperimentFiles, NameTheLineThatIsNoToml) {
+  EXPECT_EQ(errors_of("[common]", "[*common]").substr(0, 3), "4: ");
+}
+
 TEST(Experiments, OfTheProjectAreValid) {
   const std::vector<std::string> names = known_experiments();
   EXPECT_GE(names.size(), 4u);

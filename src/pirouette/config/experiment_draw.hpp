@@ -7,7 +7,7 @@
 
 namespace pirouette {
 
-inline constexpr std::int64_t kMaxTrials = 10'000'000;
+inline constexpr std::int64_t kMaxTrials = 1'000'000;
 inline constexpr std::int64_t kMaxDrawSeed = 9'000'000'000'000'000;  ///< as of run.seed
 
 /// A parameter that each trial draws anew: one of `values`, or, without any, uniform in [min, max],

@@ -26,7 +26,7 @@ class Expansion {
       : experiment_(experiment), settings_(settings), changes_(changes), errors_(errors) {}
 
   void run() {
-    if (experiment_.rows.empty()) return;
+    if (experiment_.rows.empty() || too_many()) return;
     if (experiment_.random) {
       draw_trials(*experiment_.random);
       return;
@@ -41,6 +41,19 @@ class Expansion {
   }
 
  private:
+  bool too_many() {
+    double trials = static_cast<double>(experiment_.rows.size() * experiment_.seeds.size());
+    for (const ExperimentAxis& axis : experiment_.axes) {
+      trials *= static_cast<double>(axis.values.size());
+    }
+    if (experiment_.random) trials = static_cast<double>(experiment_.random->trials);
+    if (trials <= static_cast<double>(changes_.max_trials)) return false;
+    report({experiment_.file.string(), 0, "",
+            "makes " + toml_literal(trials) + " trials; allowed: at most " +
+                std::to_string(changes_.max_trials)});
+    return true;
+  }
+
   /// The next combination of axis values, the last axis varying fastest; false after the last one.
   bool next(std::vector<std::size_t>& levels) const {
     for (std::size_t axis = levels.size(); axis-- > 0;) {
@@ -194,7 +207,7 @@ void change_draws(const ExperimentChanges& changes, Experiment& experiment, Erro
                       "given " + std::to_string(*value) + "; allowed: " + std::to_string(min) +
                           " to " + std::to_string(max)});
   };
-  change("--trials", changes.trials, 1, kMaxTrials, experiment.random->trials);
+  change("--trials", changes.trials, 1, changes.max_trials, experiment.random->trials);
   change("--seed", changes.draw_seed, 0, kMaxDrawSeed, experiment.random->seed);
 }
 

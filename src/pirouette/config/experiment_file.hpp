@@ -101,6 +101,7 @@ struct ExperimentChanges {
   std::optional<int> seeds{};                         ///< run seeds 1 to this instead of the file's
   std::optional<double> turns{};                      ///< run.turns of every trial
   std::optional<std::int64_t> trials{}, draw_seed{};  ///< of a random experiment
+  std::int64_t max_trials = kMaxTrials;               ///< an experiment of more is refused
 };
 
 /// The experiment with the configuration of each trial, or everything that is wrong with it at
