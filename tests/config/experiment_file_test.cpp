@@ -252,7 +252,7 @@ TEST_F(ExperimentFiles, RefuseMoreTrialsThanAnyoneCanRun) {
   const Result<Experiment> many = load(kGood + axes);
   ASSERT_FALSE(many);
   EXPECT_EQ(many.errors().front().to_string(),
-            file().string() + ": makes 1.6e9 trials; allowed: at most 1000000");
+            file().string() + ": makes 1.6e+09 trials; allowed: at most 1000000");
   const Result<Experiment> sixteen = load(kGood, {.max_trials = 15});
   ASSERT_FALSE(sixteen);
   EXPECT_EQ(sixteen.errors().front().to_string(),

@@ -1,6 +1,7 @@
 #include "pirouette/config/experiment_file.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <set>
 #include <utility>
 
@@ -48,8 +49,10 @@ class Expansion {
     }
     if (experiment_.random) trials = static_cast<double>(experiment_.random->trials);
     if (trials <= static_cast<double>(changes_.max_trials)) return false;
+    char text[32];
+    std::snprintf(text, sizeof text, "%.7g", trials);
     report({experiment_.file.string(), 0, "",
-            "makes " + toml_literal(trials) + " trials; allowed: at most " +
+            "makes " + std::string(text) + " trials; allowed: at most " +
                 std::to_string(changes_.max_trials)});
     return true;
   }
