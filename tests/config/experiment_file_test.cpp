@@ -262,6 +262,8 @@ TEST_F(ExperimentFiles, RefuseMoreTrialsThanAnyoneCanRun) {
 
 TEST_F(ExperimentFiles, NameTheLineThatIsNoToml) {
   EXPECT_EQ(errors_of("[common]", "[*common]").substr(0, 3), "4: ");
+  EXPECT_EQ(errors_of("run.turns = 1", "run.turns = 1 \u00e9").substr(0, 3), "5: ");
+  EXPECT_EQ(errors_of("run.turns = 1", "run.turns\u01d2 = 1").substr(0, 3), "5: ");
 }
 
 TEST(Experiments, OfTheProjectAreValid) {

@@ -51,7 +51,7 @@ LongSpin spin_for_ten_minutes(const Config& config) {
   test::ClosedLoop loop(config);
   const auto true_position = [&] { return Vec2(loop.plant.truth().p_WG.head<2>()); };
   const auto estimate = [&] { return Vec2(loop.controller.trace().state.p_WG.head<2>()); };
-  loop.run(config.gait.stand_time, test::spin(kRate));
+  loop.run(config.gait.stand_time, test::stand_still());
   const Vec2 point = true_position(), believed_point = estimate();
 
   LongSpin result;
