@@ -99,7 +99,7 @@ TEST(LongSpin, WithoutWhiteNoiseStaysWithinTheBoundsOfEightTurns) {
   expect_bounds_of_eight_turns(spin.true_distance);
 }
 
-// Blind, noise makes the odometry's error a random walk: docs/faults.md#ten-minutes. What the
+// Blind, noise makes the odometry's error a random walk: docs/terrain.md#random-walk. What the
 // controller can hold is the place that it believes in.
 TEST(LongSpin, WithNoiseLeavesThePointNoFasterThanTheOdometryWalks) {
   const LongSpin spin = spin_for_ten_minutes(Config{});
