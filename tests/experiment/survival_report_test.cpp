@@ -49,6 +49,7 @@ class SurvivalReports : public test::TempFolderTest {
       result.keys.push_back("key" + std::to_string(i));
       result.values.push_back({{"fell", fell ? 1.0 : 0.0},
                                {"fall_time_s", fell ? Number(size) : std::nullopt},
+                               {"stand_down_delay_s", fell ? Number(0.25) : std::nullopt},
                                {"com.distance_to_point_mean_mm", size}});
     }
     return result;
@@ -97,6 +98,20 @@ TEST_F(SurvivalReports, MissTheirBoundWithTooManyFalls) {
       SurvivalReport(experiment_, made_up({1, 2, 3})).missed_bounds();
   ASSERT_EQ(missed.size(), 1u);
   EXPECT_EQ(missed.front(), "3 of 40 trials fell; allowed: 2");
+}
+
+TEST_F(SurvivalReports, MissTheirBoundWithAFallThatDoesNotEndInTheStandDown) {
+  SweepResult result = made_up({1, 2});
+  EXPECT_NE(
+      SurvivalReport(experiment_, result)
+          .markdown()
+          .find(
+              "Of 2 falls 2 ended in the controller's stand-down, at most 0.25 s after the fall."),
+      std::string::npos);
+  result.values[2]["stand_down_delay_s"] = std::nullopt;
+  const std::vector<std::string> missed = SurvivalReport(experiment_, result).missed_bounds();
+  ASSERT_EQ(missed.size(), 1u);
+  EXPECT_EQ(missed.front(), "1 of 2 falls did not end in the stand-down");
 }
 
 TEST_F(SurvivalReports, HaveATableWithWhatWasDrawn) {

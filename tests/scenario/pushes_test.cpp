@@ -27,6 +27,13 @@ TEST_P(PushedSpin, DeviatesLittleFromThePointAndNeverFalls) {
   EXPECT_FALSE(pushed(1.0, GetParam()).fell);
 }
 
+TEST_P(PushedSpin, EndsInTheStandDownWhenThePushIsTooHard) {
+  const Metrics m = pushed(4.0, GetParam());
+  ASSERT_TRUE(m.fell);
+  ASSERT_TRUE(m.stand_down_delay_s);
+  EXPECT_LE(*m.stand_down_delay_s, 0.5);
+}
+
 INSTANTIATE_TEST_SUITE_P(Directions, PushedSpin,
                          testing::Values(0, 45, 90, 135, 180, 225, 270, 315),
                          [](const auto& of) { return std::to_string(of.param) + "Degrees"; });

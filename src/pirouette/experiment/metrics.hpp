@@ -115,7 +115,7 @@ struct RunContext {
 
 struct Metrics {
   bool fell = false;
-  Number fall_time_s;
+  Number fall_time_s, stand_down_delay_s;
   double turns_done = 0.0;
   Number yaw_rate_mean, yaw_rate_error;
   ComMetrics com;
@@ -168,6 +168,8 @@ template <class Self, class Visit>
 void Metrics::fields(Self& m, Visit&& v) {
   v(m.fell, "fell", "", "the robot fell, or its controller gave up for a second");
   v(m.fall_time_s, "fall_time_s", "s", "when it fell, from the start of the simulation");
+  v(m.stand_down_delay_s, "stand_down_delay_s", "s",
+    "from the fall to the controller's stand-down; null without a fall, or when none came in 1 s");
   v(m.turns_done, "turns_done", "1",
     "true turns while recording; positive in the commanded direction");
   v(m.yaw_rate_mean, "yaw_rate_mean", "rad/s", "true turned angle over recorded time");

@@ -9,6 +9,7 @@
 namespace pirouette {
 
 inline constexpr const char* kFallTime = "fall_time_s";
+inline constexpr const char* kStandDownDelay = "stand_down_delay_s";
 
 /// What a reader must know to compare a number; the same for every table.
 struct ReportContext {

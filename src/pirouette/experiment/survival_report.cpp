@@ -32,6 +32,9 @@ void add_trial(const MetricValues& values, SurvivalGroup& group) {
   ++group.trials;
   if (fell(values)) {
     ++group.falls;
+    if (const Number delay = metric(values, kStandDownDelay)) {
+      group.stand_down_delays.push_back(*delay);
+    }
     return;
   }
   for (const auto& [name, value] : values) {
@@ -93,9 +96,17 @@ class MarkdownWriter {
            << percent(static_cast<double>(stood) / static_cast<double>(group.trials)) << " | "
            << percent(interval->low) << " to " << percent(interval->high) << " |\n";
     }
+    const SurvivalGroup& all = report_.groups.front();
+    if (all.falls > 0) {
+      const Number latest = quantile(all.stand_down_delays, 1.0);
+      out_ << "\nOf " << all.falls << " falls " << all.stand_down_delays.size()
+           << " ended in the controller's stand-down"
+           << (latest ? ", at most " + short_number(*latest) + " s after the fall" : "") << ".\n";
+    }
     if (const auto& allowed = experiment_.random->max_falls) {
-      out_ << "\nAllowed are " << *allowed
-           << " falls: " << (report_.missed_bounds().empty() ? "holds" : "**missed**") << ".\n";
+      const bool holds = all.falls <= static_cast<std::size_t>(*allowed);
+      out_ << "\nAllowed are " << *allowed << " falls: " << (holds ? "holds" : "**missed**")
+           << ".\n";
     }
   }
 
@@ -140,7 +151,10 @@ class MarkdownWriter {
 
 Json as_json(const SurvivalGroup& group, const std::vector<ExperimentColumn>& columns) {
   const std::size_t stood = group.trials - group.falls;
-  Json out = {{"row", group.label}, {"trials", group.trials}, {"falls", group.falls}};
+  Json out = {{"row", group.label},
+              {"trials", group.trials},
+              {"falls", group.falls},
+              {"stood_down", group.stand_down_delays.size()}};
   if (const auto interval = wilson_interval(stood, group.trials)) {
     out["survived"] = static_cast<double>(stood) / static_cast<double>(group.trials);
     out["interval_95"] = {interval->low, interval->high};
@@ -210,11 +224,18 @@ std::string SurvivalReport::json() const {
 }
 
 std::vector<std::string> SurvivalReport::missed_bounds() const {
+  std::vector<std::string> missed;
   const auto& allowed = experiment->random->max_falls;
-  const std::size_t falls = groups.front().falls;
-  if (!allowed || falls <= static_cast<std::size_t>(*allowed)) return {};
-  return {std::to_string(falls) + " of " + std::to_string(experiment->trials.size()) +
-          " trials fell; allowed: " + std::to_string(*allowed)};
+  const SurvivalGroup& all = groups.front();
+  if (allowed && all.falls > static_cast<std::size_t>(*allowed)) {
+    missed.push_back(std::to_string(all.falls) + " of " + std::to_string(all.trials) +
+                     " trials fell; allowed: " + std::to_string(*allowed));
+  }
+  if (const std::size_t rest = all.falls - all.stand_down_delays.size(); rest > 0) {
+    missed.push_back(std::to_string(rest) + " of " + std::to_string(all.falls) +
+                     " falls did not end in the stand-down");
+  }
+  return missed;
 }
 
 }  // namespace pirouette

@@ -14,6 +14,7 @@ struct SurvivalGroup {
   std::string label;
   std::size_t trials = 0;
   std::size_t falls = 0;
+  std::vector<double> stand_down_delays{};  ///< s, of the falls that ended in the stand-down
   std::map<std::string, std::vector<double>>
       samples{};  ///< by metric; of the trials without a fall
 };
@@ -35,7 +36,8 @@ struct SurvivalReport {
   std::string markdown() const;
   /// The same numbers for programs.
   std::string json() const;
-  /// Not empty when more trials fell than the experiment allows.
+  /// Not empty when more trials fell than the experiment allows, or one fell and did not end in the
+  /// stand-down.
   std::vector<std::string> missed_bounds() const;
 };
 

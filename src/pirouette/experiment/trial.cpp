@@ -200,6 +200,7 @@ class Trial {
       const PlantTruth& truth = plant_.truth();
       if (has_fallen(truth) || gave_up()) {
         fall_time_ = schedule_.seconds(tick_);
+        stand_down_delay_ = await_stand_down();
         break;
       }
       yaw_.update(rpy_from_rotation(truth.base.R_WB).yaw);
@@ -238,6 +239,14 @@ class Trial {
     return stood_down_ticks_ > schedule_.ticks(kStandDownTime);
   }
 
+  Number await_stand_down() {
+    for (std::int64_t waited = 0; waited <= schedule_.ticks(kStandDownTime); ++waited) {
+      if (is_stood_down(controller_.status())) return schedule_.seconds(waited);
+      plant_.advance(controller_.tick(plant_.sense(), motion_.command));
+    }
+    return std::nullopt;
+  }
+
   void log(const PlantTruth& truth) {
     const TickTrace& trace = controller_.trace();
     if (tick_ >= schedule_.record) {
@@ -272,6 +281,7 @@ class Trial {
     Metrics m = evaluate(record_, commanded_, schedule_.rate);
     m.fell = fall_time_.has_value();
     m.fall_time_s = fall_time_;
+    m.stand_down_delay_s = stand_down_delay_;
     m.timing = summarise_times(tick_us_, mpc_us_, wbc_us_);
     m.timing.physics_step_us_median = plant_.physics_step_us_median();
     m.timing.real_time_factor = simulated / wall;
@@ -294,7 +304,7 @@ class Trial {
   std::int64_t tick_ = 0;
   std::int64_t rows_ = 0;
   std::int64_t stood_down_ticks_ = 0;
-  Number fall_time_;
+  Number fall_time_, stand_down_delay_;
   Clock::time_point start_;
 };
 
