@@ -62,7 +62,7 @@ view: python  ## the running simulation in a browser; ARGS='--terrain slope:10 -
 
 .PHONY: report
 report: setup  ## HTML page about runs, with plots and a 3D replay; RUN='FOLDER...' [the latest of runs/]
-	@run='$(RUN)'; run=$${run:-$$(ls -td runs/*/ 2>/dev/null | head -1)}; \
+	@run='$(RUN)'; run=$${run:-$$(ls -t runs/*/run.toml 2>/dev/null | head -1)}; run=$${run%/run.toml}; \
 	test -n "$$run" || { echo 'report: no run in runs/; make spin first'; exit 2; }; \
 	$(PYTHON) -m pirouette.report $$run $(ARGS)
 

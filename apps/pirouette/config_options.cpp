@@ -168,6 +168,9 @@ std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
   if (is_turn_ && !radius_ && !speed_ && !is_given("--path") && !file_) {
     errors.push_back({"--radius", 0, "", "missing; or give --speed, --path or --config"});
   }
+  if (heading_offset_deg_ && !radius_ && !speed_) {
+    errors.push_back({"--heading-offset-deg", 0, "", "needs --radius or --speed"});
+  }
   const std::pair<const char*, std::optional<double>> numbers[] = {
       {"--radius", radius_}, {"--speed", speed_}, {"--heading-offset-deg", heading_offset_deg_}};
   for (const auto& [option, number] : numbers) {

@@ -386,6 +386,22 @@ TEST_F(ConfigFiles, RelationsBetweenParametersAreChecked) {
             std::string::npos);
   EXPECT_NE(error_of("[mpc]\nhorizon = 2\nticks_per_solve = 100\n").find("within the horizon"),
             std::string::npos);
+  EXPECT_NE(error_of("[gait]\nperiod = 0.4\nstep_duty = 0.9\n").find("my.toml:3: gait.step_duty"),
+            std::string::npos);
+  EXPECT_NE(error_of("[terrain]\nstep_residual = 0.001\nstep_residual_release = 0.002\n")
+                .find("my.toml:3: terrain.step_residual_release"),
+            std::string::npos);
+  EXPECT_NE(error_of("[plant.sensors]\naid_rate = 10\naid_delay = 1.1\n")
+                .find("my.toml:3: plant.sensors.aid_delay"),
+            std::string::npos);
+}
+
+TEST(GaitConfig, NeverShortensAStrideBelowTheShortestSwing) {
+  GaitConfig gait;
+  gait.duty = 0.8;
+  for (const double rate : {0.0, 0.7, 3.0, -6.0, 10.0}) {
+    EXPECT_GE(gait.period_at(rate) * (1.0 - gait.duty), GaitConfig::kMinSwingTime - 1e-12) << rate;
+  }
 }
 
 TEST_F(ConfigFiles, AControlRateThatTheTimestepDividesIsAccepted) {

@@ -48,6 +48,28 @@ TEST(SensorGuard, HandsOnWhatALiveRobotMeasures) {
   }
 }
 
+TEST(SensorGuard, LosesAnAidWithoutANumberAndNothingElse) {
+  Guarded g;
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (int tick = 0; tick < 100; ++tick) {
+    SensorReading occluded = live(tick);
+    occluded.aid = PositionAid{.p_WB = Vec3(0.1, nan, 0.3)};
+    ASSERT_TRUE(g.update(occluded));
+    ASSERT_FALSE(g.input().sensors.aid);
+  }
+}
+
+TEST(SensorGuard, HearsAnAidOnce) {
+  Guarded g;
+  SensorReading sensors = live(0);
+  sensors.aid = PositionAid{};
+  EXPECT_TRUE(g.update(sensors));
+  EXPECT_TRUE(g.input().sensors.aid);
+  sensors.w_WB_B.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(g.update(sensors));
+  EXPECT_FALSE(g.input().sensors.aid);
+}
+
 TEST(SensorGuard, LetsTheSampleBeforeStandInForASpike) {
   for (const bool of_gyro : {true, false}) {
     Guarded g;

@@ -255,6 +255,16 @@ TEST_F(MiniCheetahModel, IsTheSameWhateverTheOrderOfTheLegsInTheFile) {
   }
 }
 
+TEST_F(MiniCheetahModel, CountsNothingThatStandsBesideTheRobot) {
+  std::string text = text_of_robot();
+  text.insert(text.find("</worldbody>"),
+              "<body name=\"table\" pos=\"5 0 0\"><geom size=\"0.1\" mass=\"10\"/></body>");
+  RobotModel furnished = RobotModel::load(write(text)).value();
+  const PerLeg<Vec3> q = random_.state().joint_position;
+  EXPECT_EQ(furnished.mass(), model_.mass());
+  EXPECT_LT(distance(furnished.inertia(q), model_.inertia(q)), kExact);
+}
+
 TEST(RobotModelErrors, NameAFileThatIsNotThere) {
   expect_mentions(errors_of("/no/such/robot.xml"), "/no/such/robot.xml: not a readable MJCF file");
 }

@@ -206,5 +206,17 @@ TEST(Path, ThereIsNoneThroughTooFewOrCoincidingWaypoints) {
   EXPECT_FALSE(Path::spline(not_finite, true));
 }
 
+TEST(Path, ThereIsNoneThatTurnsBackOnItself) {
+  // The spline through these stands still half-way back: there it has no tangent.
+  const std::vector<Vec2> there_and_back = {{0.0, 0.0}, {1.0, 0.0}, {0.0, 0.0}};
+  EXPECT_FALSE(Path::spline(there_and_back, false));
+  const std::vector<Vec2> hairpin = {{0.0, 0.0}, {1.0, 0.0}, {1.0, 0.05}, {0.0, 0.05}};
+  const std::optional<Path> narrow = Path::spline(hairpin, false);
+  ASSERT_TRUE(narrow);
+  for (double s = 0.0; s <= narrow->length(); s += 1e-3) {
+    ASSERT_TRUE(narrow->at(s).p.allFinite() && std::isfinite(narrow->at(s).curvature)) << s;
+  }
+}
+
 }  // namespace
 }  // namespace pirouette

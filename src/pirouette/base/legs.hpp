@@ -20,8 +20,6 @@ constexpr std::string_view name(Leg leg) { return kLegNames[index(leg)]; }
 constexpr double side_sign(Leg leg) { return (leg == Leg::kFL || leg == Leg::kRL) ? 1.0 : -1.0; }
 /// +1 for the front legs, -1 for the rear ones.
 constexpr double fore_sign(Leg leg) { return (leg == Leg::kFR || leg == Leg::kFL) ? 1.0 : -1.0; }
-/// The leg across the body's diagonal: the other one of a trot pair.
-constexpr Leg diagonal(Leg leg) { return static_cast<Leg>(3 - static_cast<int>(leg)); }
 
 /// One T for each leg, indexed by Leg. Iterates in the order FR FL RR RL. Starts as T{} or, for
 /// fixed-size Eigen types, whose T{} is uninitialised, as zeros.

@@ -21,7 +21,6 @@ inline constexpr double kGravity = 9.81;  ///< m/s^2, along -z of the world
 
 constexpr double square(double x) { return x * x; }
 constexpr double radians(double degrees) { return degrees * kPi / 180.0; }
-constexpr double degrees(double radians) { return radians * 180.0 / kPi; }
 
 /// Vector `v` shortened to at most `limit` in length, direction kept.
 template <int N>

@@ -185,26 +185,19 @@ std::optional<Vec2> CentreOfMassPlanner::diagonal_target(const ComPlannerInput& 
 }
 
 ComPlan CentreOfMassPlanner::psp_plan(const ComPlannerInput& in, double dt) noexcept {
-  if (!started_) {
-    offset_ = in.com - in.reference;
-    previous_target_ = in.com;
-  }
+  if (!started_) offset_ = in.com - in.reference;
   std::optional<Vec2> target = config_.on_diagonal ? diagonal_target(in) : std::nullopt;
   if (!target) target = polygon_target();
   const Vec2 wanted = target ? Vec2(config_.gain * (*target - in.reference)) : offset_;
   offset_ += clamp_norm(Vec2(wanted - offset_), config_.max_speed * dt);
 
-  ComPlan plan;
-  plan.p_WG = in.reference + offset_;
-  if (started_ && dt > 0.0) plan.v_WG = (plan.p_WG - previous_target_) / dt;
-  previous_target_ = plan.p_WG;
-  return plan;
+  return {.p_WG = in.reference + offset_};
 }
 
 ComPlan CentreOfMassPlanner::linear_plan(const ComPlannerInput& in) const noexcept {
   const double period = in.gait.stance_duration + in.gait.swing_duration;
   const Vec2 step = clamp_norm(Vec2(in.reference - in.com), config_.max_speed * period);
-  return {.p_WG = in.com + step, .v_WG = step / period};
+  return {.p_WG = in.com + step};
 }
 
 }  // namespace pirouette

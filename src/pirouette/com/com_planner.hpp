@@ -88,7 +88,6 @@ class CentreOfMassPlanner {
   bool started_ = false;
   PerLeg<Vertex> vertices_;
   Vec2 offset_ = Vec2::Zero();  ///< m, target from the path reference
-  Vec2 previous_target_ = Vec2::Zero();
 };
 
 }  // namespace pirouette

@@ -95,8 +95,11 @@ struct GaitConfig {
   /// in one.
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
-    return std::max(std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate));
+    return std::max({std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate),
+                     kMinSwingTime / (1.0 - longest_duty())});
   }
+  /// On any ground.
+  double longest_duty() const { return adapt ? std::max(duty, step_duty) : duty; }
   /// s, of the stride after a push.
   double recovery_period_at(double yaw_rate) const {
     return std::min(period_at(yaw_rate), std::max(recovery_period, kMinSwingTime / (1.0 - duty)));
@@ -387,6 +390,8 @@ struct AidConfig {
   double timeout = 2.0;
   double max_offset = 0.5;
 
+  static constexpr std::size_t kHistory = 512;  ///< ticks, that a measurement may be old
+
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
     v(s.enabled, "enabled", "Use position measurements from outside where there are any.");
@@ -476,7 +481,6 @@ struct JointConfig {
   double kd_stance = 1.0;
   double kp_swing = 30.0;
   double kd_swing = 1.0;
-  double kp_stand = 60.0;
   double kd_stand = 2.0;
   double filter_time = 0.0005;
   double friction_compensation = 1.0;
@@ -489,9 +493,8 @@ struct JointConfig {
     v(s.kd_stance, "kd_stance", "N m s/rad", Range{0.0, 100.0}, "Joint damping of a stance leg.");
     v(s.kp_swing, "kp_swing", "N m/rad", Range{0.0, 1e3}, "Joint stiffness of a swing leg.");
     v(s.kd_swing, "kd_swing", "N m s/rad", Range{0.0, 100.0}, "Joint damping of a swing leg.");
-    v(s.kp_stand, "kp_stand", "N m/rad", Range{0.0, 1e3}, "Joint stiffness while standing.");
     v(s.kd_stand, "kd_stand", "N m s/rad", Range{0.0, 100.0},
-      "Joint damping while standing and standing down.");
+      "Joint damping in the stand-down, the safe state.");
     v(s.filter_time, "filter_time", "s", Range{0.0, 0.1},
       "Time constant of the low-pass filter of the feed-forward torque; 0: none.");
     v(s.friction_compensation, "friction_compensation", "1", Range{0.0, 1.0},

@@ -104,14 +104,26 @@ Errors validate(const Config& config) {
           config.run.trace_rate, " Hz; allowed: up to control.rate = ", config.control.rate, " Hz");
 
   constexpr double kMinSwingTime = GaitConfig::kMinSwingTime;
-  const double swing_time = config.gait.period * (1.0 - config.gait.duty);
-  require(swing_time > kMinSwingTime - kRounding, "gait.duty", "given ", config.gait.duty,
+  const double duty = config.gait.longest_duty();
+  const double swing_time = config.gait.period * (1.0 - duty);
+  require(swing_time > kMinSwingTime - kRounding,
+          duty > config.gait.duty ? "gait.step_duty" : "gait.duty", "given ", duty,
           " with gait.period = ", config.gait.period, " s: a swing of ", swing_time,
           " s; allowed: swings of ", kMinSwingTime, " s and longer");
 
   require(config.mpc.min_normal_force < config.mpc.max_normal_force, "mpc.min_normal_force",
           "given ", config.mpc.min_normal_force,
           " N; allowed: less than mpc.max_normal_force = ", config.mpc.max_normal_force, " N");
+
+  require(config.terrain.step_residual_release <= config.terrain.step_residual,
+          "terrain.step_residual_release", "given ", config.terrain.step_residual_release,
+          " m; allowed: up to terrain.step_residual = ", config.terrain.step_residual, " m");
+
+  const SensorConfig& sensors = config.plant.sensors;
+  const double remembered = static_cast<double>(AidConfig::kHistory - 1) * control_period;
+  require(sensors.aid_rate == 0.0 || sensors.aid_delay <= remembered, "plant.sensors.aid_delay",
+          "given ", sensors.aid_delay, " s; allowed: up to ", remembered,
+          " s, as long as the controller remembers");
 
   const double solve_period = config.mpc.ticks_per_solve * control_period;
   const double horizon = config.mpc.horizon * config.mpc.step_share * config.gait.period;

@@ -11,14 +11,15 @@ bool is_finite(const SensorReading& s) {
   bool ok = std::isfinite(s.time) && s.specific_force_B.allFinite() && s.w_WB_B.allFinite();
   for (const Leg leg : kLegs)
     ok = ok && s.joint_position[leg].allFinite() && s.joint_velocity[leg].allFinite();
-  if (s.aid) {
-    ok = ok && s.aid->p_WB.allFinite() && std::isfinite(s.aid->yaw) && std::isfinite(s.aid->time);
-  }
   if (s.truth) {
     ok = ok && s.truth->p_WB.allFinite() && s.truth->R_WB.allFinite() &&
          s.truth->v_WB_W.allFinite() && s.truth->w_WB_B.allFinite();
   }
   return ok;
+}
+
+bool is_finite(const PositionAid& aid) {
+  return aid.p_WB.allFinite() && std::isfinite(aid.yaw) && std::isfinite(aid.time);
 }
 
 bool is_finite(const MotionCommand& c) {
@@ -33,6 +34,7 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
   if (!is_finite(sensors) || !is_finite(command)) {
     ++bad_inputs_;
     input_.sensors.time += period_;
+    input_.sensors.aid.reset();  // heard once
     return started_ && bad_inputs_ <= config_.max_bad_readings;
   }
   bad_inputs_ = 0;
@@ -43,6 +45,7 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
   const Vec3 last_w_WB_B = input_.sensors.w_WB_B;
   const Vec3 last_specific_force_B = input_.sensors.specific_force_B;
   input_.sensors = sensors;
+  if (sensors.aid && !is_finite(*sensors.aid)) input_.sensors.aid.reset();
   input_.command = command;
   if (outliers_ > 0) {
     input_.sensors.w_WB_B = last_w_WB_B;

@@ -43,7 +43,7 @@ std::optional<double> limit(const ExperimentBound& bound, const Spread* other) {
 std::string why_missed(const BoundCheck& check) {
   const ExperimentBound& bound = *check.bound;
   const ReportEntry& entry = *check.entry;
-  if (entry.falls > 0 && bound.metric != kFallTime) {
+  if (entry.falls > 0 && !is_of_falls(bound.metric)) {
     return "counts as missed, " + std::to_string(entry.falls) + " of " +
            std::to_string(entry.trials) + " trials fell";
   }
@@ -81,7 +81,7 @@ Report::Report(const Experiment& of, const SweepResult& with) : experiment(&of),
       const bool fell = values.at("fell") == 1.0;
       entry.falls += fell ? 1 : 0;
       for (const auto& [name, value] : values) {
-        if (value && (!fell || name == kFallTime)) samples[name].push_back(*value);
+        if (value && (!fell || is_of_falls(name))) samples[name].push_back(*value);
       }
     }
     for (const auto& [name, x] : samples) {

@@ -24,7 +24,7 @@ struct ReportEntry {
   const PrintedResult* printed = nullptr;  ///< nullptr: nothing printed for it
   std::size_t trials = 0;
   std::size_t falls = 0;
-  std::map<std::string, Spread> metrics;  ///< of the trials without a fall, but fall_time_s
+  std::map<std::string, Spread> metrics;  ///< of the trials without a fall, but is_of_falls()
   std::string trace;                      ///< path within the sweep's folder; empty: none
 };
 

@@ -11,6 +11,11 @@ namespace pirouette {
 inline constexpr const char* kFallTime = "fall_time_s";
 inline constexpr const char* kStandDownDelay = "stand_down_delay_s";
 
+/// What only trials with a fall have.
+inline bool is_of_falls(const std::string& metric) {
+  return metric == kFallTime || metric == kStandDownDelay;
+}
+
 /// What a reader must know to compare a number; the same for every table.
 struct ReportContext {
   const char* title;

@@ -29,9 +29,11 @@ double seconds_since(Clock::time_point start) {
 
 constexpr double kFallTilt = 1.0;           // rad
 constexpr double kFallHeight = 0.1;         // m
+constexpr double kFallShare = 0.4;          // of body.height, for small robots
 constexpr double kStandDownTime = 1.0;      // s
 constexpr double kTimePerStillTurn = 10.0;  // s
 constexpr double kProgressPeriod = 0.1;     // s, simulated
+constexpr double kMaxDuration = 1e6;        // s, simulated
 
 /// What the robot is told to do.
 struct Motion {
@@ -91,6 +93,10 @@ Result<Motion> load_motion(const RunConfig& run) {
   command.v_H = rot2(file.value().travel_direction) * Vec2(speed, 0.0);
   command.hold_heading = file.value().hold_heading;
   motion.path = Path::spline(file.value().points, file.value().closed);
+  if (!motion.path) {
+    return Error{name.value().string(), 0, "points",
+                 "the path turns back on itself; allowed: curves that a robot can follow"};
+  }
   return motion;
 }
 
@@ -106,12 +112,13 @@ std::optional<Path> commanded_path(const Motion& motion, const Vec2& p_WG, doubl
   return path;
 }
 
-bool has_fallen(const PlantTruth& truth) {
+bool has_fallen(const PlantTruth& truth, double body_height) {
   const Vec3 up = truth.base.R_WB.col(2);
   const double upright = up.dot(truth.ground_normal_W);
   const double height = truth.p_WG.z() - truth.ground_height;
   // Written so that a value that is not a number counts as a fall.
-  return !(upright > std::cos(kFallTilt) && height > kFallHeight && truth.p_WG.allFinite() &&
+  const double least_height = std::min(kFallHeight, kFallShare * body_height);
+  return !(upright > std::cos(kFallTilt) && height > least_height && truth.p_WG.allFinite() &&
            truth.v_WG_W.allFinite());
 }
 
@@ -128,7 +135,7 @@ RunContext describe_run(const Config& config, const CommandedMotion& commanded) 
   c.foot_model = enum_name(config.foot.model);
   c.com_planner = enum_name(config.com.planner);
   c.duty = config.gait.duty;
-  c.period = config.gait.period_at(config.run.rate);
+  c.period = config.gait.period_at(commanded.yaw_rate);
   c.torsional_friction = config.plant.torsional_friction;
   c.friction = config.plant.friction;
   c.seed = config.run.seed;
@@ -158,6 +165,12 @@ Result<Setup> build(const Config& config) {
   if (!mjcf) return mjcf.errors();
   Result<Motion> motion = load_motion(config.run);
   if (!motion) return motion.errors();
+  const double recorded = recorded_time(config.run, motion.value());
+  if (!(recorded <= kMaxDuration)) {
+    std::ostringstream text;
+    text << "makes a trial of " << recorded << " s; allowed: up to " << kMaxDuration << " s";
+    return Error{"", 0, config.run.path.empty() ? "run.turns" : "run.laps", text.str()};
+  }
   Result<SpinController> controller = SpinController::create(config, mjcf.value());
   const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
   Result<Plant> plant =
@@ -198,23 +211,30 @@ class Trial {
     for (tick_ = 0; tick_ <= schedule_.end; ++tick_) {
       if (options_.before_tick) options_.before_tick(tick_);
       const PlantTruth& truth = plant_.truth();
-      if (has_fallen(truth) || gave_up()) {
+      if (has_fallen(truth, config_.body.height) || gave_up()) {
         fall_time_ = schedule_.seconds(tick_);
         stand_down_delay_ = await_stand_down();
         break;
       }
       yaw_.update(rpy_from_rotation(truth.base.R_WB).yaw);
       if (tick_ == schedule_.command) begin_motion(truth);
-      const JointCommand& command =
-          tick(tick_ < schedule_.command ? MotionCommand{} : motion_.command);
+      const JointCommand& command = tick(present_command());
       log(truth);
       if (!report(truth)) return {.metrics = {}, .interrupted = true};
       if (tick_ < schedule_.end) plant_.advance(command);
+    }
+    if (!fall_time_ && is_stood_down(controller_.status())) {
+      fall_time_ = schedule_.seconds(schedule_.end);
+      stand_down_delay_ = 0.0;
     }
     return {.metrics = summarise(), .interrupted = false};
   }
 
  private:
+  MotionCommand present_command() const {
+    return tick_ < schedule_.command ? MotionCommand{} : motion_.command;
+  }
+
   void begin_motion(const PlantTruth& truth) {
     const MotionCommand& command = motion_.command;
     if (!command.point) commanded_.point = truth.p_WG.head<2>();
@@ -242,7 +262,8 @@ class Trial {
   Number await_stand_down() {
     for (std::int64_t waited = 0; waited <= schedule_.ticks(kStandDownTime); ++waited) {
       if (is_stood_down(controller_.status())) return schedule_.seconds(waited);
-      plant_.advance(controller_.tick(plant_.sense(), motion_.command));
+      if (options_.before_tick) options_.before_tick(tick_ + waited);
+      plant_.advance(controller_.tick(plant_.sense(), present_command()));
     }
     return std::nullopt;
   }
@@ -312,12 +333,6 @@ class Trial {
 
 const char* version() { return PIROUETTE_VERSION; }
 const char* commit() { return PIROUETTE_COMMIT; }
-
-double trial_duration(const Config& config) {
-  const Result<Motion> motion = load_motion(config.run);
-  const Schedule schedule(config, motion ? motion.value() : Motion{});
-  return schedule.seconds(schedule.end);
-}
 
 Errors check_trial(const Config& config) {
   const Result<Setup> setup = build(config);

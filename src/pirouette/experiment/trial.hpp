@@ -38,19 +38,16 @@ struct TrialResult {
 const char* version();
 const char* commit();
 
-/// Simulated time of the trial in s: standing, settling and the turns. Without a yaw rate each turn
-/// counts 10 s; run.path is walked run.laps times, once when open.
-double trial_duration(const Config& config);
-
 /// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, the
-/// path.
+/// path, a length of more than 10^6 s.
 Errors check_trial(const Config& config);
 
 /// Stands for gait.stand_time, then commands run.velocity and run.rate, or run.path; records after
-/// run.settle_time until run.turns are due. Ends early when the robot falls: the trunk leans more
-/// than 1 rad from the terrain's normal, the CoM is lower than 0.1 m above ground, the truth is not
-/// finite, or the controller has stood down for 1 s. The same config gives the same rows bit for
-/// bit.
+/// run.settle_time until run.turns are due; without a yaw rate each turn counts 10 s, and run.path
+/// is walked run.laps times, once when open. Ends early when the robot falls: the trunk leans more
+/// than 1 rad from the terrain's normal, the CoM is lower than 0.1 m (small robots: 0.4
+/// body.height) above ground, the truth is not finite, or the controller has stood down for 1 s.
+/// The same config gives the same rows bit for bit.
 Result<TrialResult> run_trial(const Config& config, const TrialOptions& options = {});
 
 }  // namespace pirouette

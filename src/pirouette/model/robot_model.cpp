@@ -164,6 +164,7 @@ Mat3 RobotModel::inertia(const PerLeg<Vec3>& q) {
   const mjData& d = *impl_->d;
   Mat3 total = Mat3::Zero();
   for (int body = 1; body < m.nbody; ++body) {
+    if (m.body_rootid[body] != m.body_rootid[impl_->map.trunk_body]) continue;
     const Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>> axes(d.ximat + 9 * body);
     const Mat3 R = axes;
     const Vec3 arm = vec3(d.xipos + 3 * body) - p_BG;

@@ -36,6 +36,23 @@ double arc_length(const Piece& k, double u) {
   return half * sum;
 }
 
+/// Least |p'| of the piece, which is about 1 everywhere but where the curve turns back on itself.
+/// p' is taken as straight between samples.
+double least_speed(const Piece& k) {
+  constexpr int kSamples = 8;
+  double least = std::numeric_limits<double>::infinity();
+  Vec2 from = first_derivative(k, 0.0);
+  for (int i = 1; i <= kSamples; ++i) {
+    const Vec2 to = first_derivative(k, i * k.end / kSamples);
+    const Vec2 step = to - from;
+    const double length2 = step.squaredNorm();
+    const double share = length2 > 0.0 ? std::clamp(-from.dot(step) / length2, 0.0, 1.0) : 0.0;
+    least = std::min(least, (from + share * step).norm());
+    from = to;
+  }
+  return least;
+}
+
 /// The same curve with u counted from `start`, up to `length` further.
 Piece cut(const Piece& k, double start, double length) {
   Piece out;
@@ -170,6 +187,7 @@ std::optional<Path> Path::spline(std::span<const Vec2> waypoints, bool closed) {
   }
   const Eigen::MatrixX2d m = knot_curvatures(waypoints, chords);
 
+  constexpr double kMinSpeed = 0.02;
   Spline spline;
   spline.closed = closed;
   for (std::size_t i = 0; i < chords.size(); ++i) {
@@ -183,6 +201,7 @@ std::optional<Path> Path::spline(std::span<const Vec2> waypoints, bool closed) {
     const double count = std::ceil(h / kPieceLength);
     for (double k = 0.0; k < count; ++k) {
       Piece piece = cut(whole, k * h / count, h / count);
+      if (!(least_speed(piece) > kMinSpeed)) return std::nullopt;
       piece.s = spline.length;
       spline.length += arc_length(piece, piece.end);
       spline.pieces.push_back(piece);

@@ -28,6 +28,8 @@ class PathReference {
   /// down towards the end of an open path and stays there.
   void follow(std::optional<Path> path);
 
+  bool follows_path() const noexcept { return path_.has_value(); }
+
   PathPoint update(const MotionCommand& command, const RobotState& state, double dt) noexcept;
 
   /// The next update anchors at the robot. The path stays.

@@ -30,7 +30,7 @@ class PositionAidOffset {
   };
   std::optional<Vec2> odometry_at(double time) const noexcept;
 
-  static constexpr std::size_t kHistory = 512;
+  static constexpr std::size_t kHistory = AidConfig::kHistory;
   AidConfig config_;
   std::array<Past, kHistory> history_;
   std::size_t recorded_ = 0;

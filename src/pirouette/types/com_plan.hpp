@@ -7,7 +7,6 @@ namespace pirouette {
 
 struct ComPlan {
   Vec2 p_WG = Vec2::Zero();  ///< m, world horizontal target of the centre of mass
-  Vec2 v_WG = Vec2::Zero();  ///< m/s, its rate along the plan
 };
 
 }  // namespace pirouette
