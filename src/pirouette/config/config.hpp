@@ -96,10 +96,12 @@ struct GaitConfig {
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
     return std::max({std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate),
-                     kMinSwingTime / (1.0 - longest_duty())});
+                     kMinSwingTime / (1.0 - duty)});
   }
-  /// On any ground.
-  double longest_duty() const { return adapt ? std::max(duty, step_duty) : duty; }
+  /// On stepped ground, with a stride of `stride` (s).
+  double step_duty_at(double stride) const {
+    return std::max(duty, std::min(step_duty, 1.0 - kMinSwingTime / stride));
+  }
   /// s, of the stride after a push.
   double recovery_period_at(double yaw_rate) const {
     return std::min(period_at(yaw_rate), std::max(recovery_period, kMinSwingTime / (1.0 - duty)));

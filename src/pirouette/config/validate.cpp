@@ -104,10 +104,8 @@ Errors validate(const Config& config) {
           config.run.trace_rate, " Hz; allowed: up to control.rate = ", config.control.rate, " Hz");
 
   constexpr double kMinSwingTime = GaitConfig::kMinSwingTime;
-  const double duty = config.gait.longest_duty();
-  const double swing_time = config.gait.period * (1.0 - duty);
-  require(swing_time > kMinSwingTime - kRounding,
-          duty > config.gait.duty ? "gait.step_duty" : "gait.duty", "given ", duty,
+  const double swing_time = config.gait.period * (1.0 - config.gait.duty);
+  require(swing_time > kMinSwingTime - kRounding, "gait.duty", "given ", config.gait.duty,
           " with gait.period = ", config.gait.period, " s: a swing of ", swing_time,
           " s; allowed: swings of ", kMinSwingTime, " s and longer");
 

@@ -190,8 +190,8 @@ void SpinController::Impl::set_gait(const MotionCommand& command, double dt) {
   const Vec2 v_error = (trace.state.v_WG_W - trace.reference.v_WG_W).head<2>();
   recovering = push_recovery.update(v_error, dt) && trace.gait.walking && gait.adapt && !careful;
   const double yaw_rate = path_reference.follows_path() ? trace.path.yaw_rate : command.yaw_rate;
-  clock.set_timing(recovering ? gait.recovery_period_at(yaw_rate) : gait.period_at(yaw_rate),
-                   careful ? std::max(gait.duty, gait.step_duty) : gait.duty);
+  const double stride = recovering ? gait.recovery_period_at(yaw_rate) : gait.period_at(yaw_rate);
+  clock.set_timing(stride, careful ? gait.step_duty_at(stride) : gait.duty);
   if (recovering) clock.hurry();
   trace.gait = clock.update(command.walk, dt);
   trace.status = trace.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
