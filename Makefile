@@ -115,9 +115,10 @@ fuzz: setup  ## FUZZ_RUNS random inputs for each reader of users' files, under s
 .PHONY: soak
 soak: build  ## minutes to hours: a spin of ten minutes, then the acceptance experiments
 	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_soak_tests
-	@$(BUILD)/tests/pirouette_soak_tests
-	@for file in experiments/acceptance/*.toml; do \
-	$(PIROUETTE) sweep $$file --jobs $(JOBS) || exit 1; done
+	@failed=0; $(BUILD)/tests/pirouette_soak_tests || failed=1; \
+	for file in experiments/acceptance/*.toml; do \
+	  $(PIROUETTE) sweep $$file --jobs $(JOBS) || failed=1; \
+	done; exit $$failed
 
 .PHONY: bench
 bench: setup  ## the controller's stages against one physics step; ARGS='--benchmark_filter=Mpc'

@@ -42,7 +42,7 @@ Path path_through(const nb::object& given, bool closed) {
   if (!path) {
     raise({{"", 0, "points",
             "allowed: at least two finite waypoints (three when closed) that do not coincide with "
-            "their neighbours, shape (n, 2)"}});
+            "their neighbours, of a path that does not turn back on itself, shape (n, 2)"}});
   }
   return *path;
 }

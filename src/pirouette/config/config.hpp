@@ -91,12 +91,15 @@ struct GaitConfig {
 
   static constexpr double kMinSwingTime = 0.05;  ///< s; a leg cannot lift, move and land in less
 
+  /// s, of a stride whose swing takes that time.
+  double shortest_stride() const { return kMinSwingTime / (1.0 - duty); }
+
   /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far
   /// in one.
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
     return std::max({std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate),
-                     kMinSwingTime / (1.0 - duty)});
+                     shortest_stride()});
   }
   /// On stepped ground, with a stride of `stride` (s).
   double step_duty_at(double stride) const {
@@ -104,7 +107,7 @@ struct GaitConfig {
   }
   /// s, of the stride after a push.
   double recovery_period_at(double yaw_rate) const {
-    return std::min(period_at(yaw_rate), std::max(recovery_period, kMinSwingTime / (1.0 - duty)));
+    return std::min(period_at(yaw_rate), std::max(recovery_period, shortest_stride()));
   }
 
   template <class Self, class Visit>

@@ -262,8 +262,8 @@ class Trial {
   Number await_stand_down() {
     for (std::int64_t waited = 0; waited <= schedule_.ticks(kStandDownTime); ++waited) {
       if (is_stood_down(controller_.status())) return schedule_.seconds(waited);
-      if (options_.before_tick) options_.before_tick(tick_ + waited);
       plant_.advance(controller_.tick(plant_.sense(), present_command()));
+      if (options_.before_tick) options_.before_tick(tick_ + waited + 1);
     }
     return std::nullopt;
   }

@@ -55,7 +55,8 @@ class Path {
   static Path arc(const Vec2& start, double heading, double curvature);
   /// Cubic spline through `waypoints` (m) over their chord length: natural ends, or periodic when
   /// `closed` (the first is not repeated). Absent for fewer than two waypoints (three when closed),
-  /// neighbours that coincide, and values that are not finite.
+  /// neighbours that coincide, values that are not finite, and a curve that turns back on itself:
+  /// where it does it has no tangent.
   static std::optional<Path> spline(std::span<const Vec2> waypoints, bool closed);
 
   /// Moves the path so that it starts at `start` with its tangent along `heading` (rad).
