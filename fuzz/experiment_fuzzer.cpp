@@ -1,6 +1,6 @@
 // Experiment files of `pirouette sweep` and `reproduce`.
 #include "input_file.hpp"
-#include "pirouette/config/experiment_file.hpp"
+#include "pirouette/study/experiment_file.hpp"
 
 using pirouette::Experiment;
 using pirouette::Result;

@@ -5,9 +5,9 @@
 #include "exit_code.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/toml.hpp"
-#include "pirouette/experiment/metrics.hpp"
-#include "pirouette/experiment/trace_file.hpp"
-#include "pirouette/experiment/trial.hpp"
+#include "pirouette/metrics/metrics.hpp"
+#include "pirouette/trial/trace_file.hpp"
+#include "pirouette/trial/trial.hpp"
 
 namespace pirouette::app {
 

@@ -3,7 +3,7 @@
 
 #include <chrono>
 
-#include "pirouette/experiment/trial.hpp"
+#include "pirouette/trial/trial.hpp"
 
 namespace pirouette::app {
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "pirouette/experiment/metrics.hpp"
+#include "pirouette/metrics/metrics.hpp"
 
 namespace pirouette::app {
 

@@ -12,9 +12,9 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "pirouette/config/suggest.hpp"
-#include "pirouette/experiment/report.hpp"
-#include "pirouette/experiment/survival_report.hpp"
-#include "pirouette/experiment/trial_table.hpp"
+#include "pirouette/report/report.hpp"
+#include "pirouette/report/survival_report.hpp"
+#include "pirouette/report/trial_table.hpp"
 
 namespace pirouette::app {
 namespace {

@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "pirouette/config/experiment_file.hpp"
-#include "pirouette/experiment/sweep.hpp"
+#include "pirouette/study/experiment_file.hpp"
+#include "pirouette/study/sweep.hpp"
 
 namespace pirouette::app {
 

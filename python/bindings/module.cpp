@@ -12,7 +12,7 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/validate.hpp"
-#include "pirouette/experiment/trial.hpp"
+#include "pirouette/trial/trial.hpp"
 
 namespace pirouette::python {
 

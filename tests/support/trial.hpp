@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pirouette/config/toml.hpp"
-#include "pirouette/experiment/trial.hpp"
+#include "pirouette/trial/trial.hpp"
 
 namespace pirouette::test {
 

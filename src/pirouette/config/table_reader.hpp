@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "pirouette/config/experiment_reader.hpp"
+#include "pirouette/study/experiment_reader.hpp"
 #include "pirouette/config/toml_node.hpp"
 
 namespace pirouette {

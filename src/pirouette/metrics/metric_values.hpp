@@ -1,0 +1,21 @@
+// The metrics of a trial as plain numbers by name.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pirouette/metrics/metrics.hpp"
+
+namespace pirouette {
+
+/// The numbers of metrics.json by key; a bool is 0 or 1. Without context and wall-clock times, so
+/// equal configurations give equal numbers.
+using MetricValues = std::map<std::string, Number>;
+
+MetricValues metric_values(const Metrics& metrics);
+
+/// Keys of MetricValues in the order of metrics.json.
+std::vector<std::string> metric_names();
+
+}  // namespace pirouette

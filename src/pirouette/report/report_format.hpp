@@ -1,0 +1,45 @@
+// Words and numbers that the parts of a report share; for this folder only.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "pirouette/report/report.hpp"
+
+namespace pirouette {
+
+inline constexpr const char* kFallTime = "fall_time_s";
+inline constexpr const char* kStandDownDelay = "stand_down_delay_s";
+
+/// What only trials with a fall have.
+inline bool is_of_falls(const std::string& metric) {
+  return metric == kFallTime || metric == kStandDownDelay;
+}
+
+/// What a reader must know to compare a number; the same for every table.
+struct ReportContext {
+  const char* title;
+  const char* key;  ///< of the parameter
+  std::string (*text)(const Config&);
+};
+std::span<const ReportContext> report_contexts();
+
+/// A cell of CSV, in quotes where it needs them.
+std::string csv_cell(const std::string& text);
+/// The shortest text that reads back as the same number.
+std::string csv_cell(double value);
+
+/// Three significant digits.
+std::string short_number(double value);
+/// "1.23 ± 0.04"; without the deviation for a single seed.
+std::string with_spread(const Spread& spread);
+
+const Spread* find_metric(const ReportEntry& entry, const std::string& metric);
+const double* find_printed(const ReportEntry& entry, const std::string& metric);
+
+/// "plant.friction 0.4, com.planner psp": the axes' values, without the profile.
+std::string axes_text(const Experiment& experiment, const ExperimentTrial& trial);
+/// The row's label and axes_text().
+std::string place_text(const Experiment& experiment, const ReportEntry& entry);
+
+}  // namespace pirouette

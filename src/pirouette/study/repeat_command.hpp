@@ -1,0 +1,17 @@
+// The command line that repeats a trial.
+#pragma once
+
+#include <string>
+
+#include "pirouette/config/config.hpp"
+
+namespace pirouette {
+
+/// `text` as one word of a POSIX shell. Control characters become "?".
+std::string shell_word(const std::string& text);
+
+/// "pirouette spin --set ...": gives exactly `config`, by what differs from the defaults of its
+/// robot, controller and profile.
+std::string repeat_command(const Config& config);
+
+}  // namespace pirouette

@@ -1,0 +1,67 @@
+// Runs the trials of an experiment in parallel. What is finished survives an interruption.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "pirouette/base/result.hpp"
+#include "pirouette/study/experiment_file.hpp"
+#include "pirouette/metrics/metric_values.hpp"
+#include "pirouette/study/results_log.hpp"
+
+namespace pirouette {
+
+inline constexpr const char* kTracesFolder = "traces";
+
+/// 16 hexadecimal digits that stand for the trial: of its configuration, the files of robot and
+/// path, and the versions of this program and of the physics.
+std::string trial_key(const Config& config);
+
+struct SweepProgress {
+  std::size_t done = 0;       ///< of `total`, with those that were finished before
+  std::size_t resumed = 0;    ///< finished before
+  std::size_t total = 0;      ///< different trials of the experiment, or of the shard
+  double seconds_left = 0.0;  ///< wall clock; 0 until the first trial of this time is done
+};
+
+struct SweepOptions {
+  unsigned jobs = 0;  ///< threads; 0: one for each hardware thread
+  /// Where the results and kTracesFolder are; shared by experiments, which then share trials.
+  std::filesystem::path folder;
+  std::optional<Shard> shard;                          ///< absent: all trials
+  bool fresh = false;                                  ///< forget what is there; not for a shard
+  std::function<void(const SweepProgress&)> progress;  ///< one call at a time; may be empty
+  std::function<bool()> stop;  ///< asked from all threads; true ends the sweep; may be empty
+};
+
+struct SweepResult {
+  std::vector<std::string> keys;     ///< of the experiment's trials, in their order
+  std::vector<MetricValues> values;  ///< likewise; empty maps for trials without a result
+  bool interrupted = false;          ///< not all that was to run has run
+};
+
+/// What would keep run_sweep() from starting: a robot's file, a terrain, a metric that there is
+/// not.
+Errors check_sweep(const Experiment& experiment);
+
+/// Runs what `folder` does not hold yet, appending each trial as it finishes. The result does not
+/// depend on `jobs`, nor on how often the sweep was interrupted, nor on how it was sharded.
+Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& options);
+
+/// How much of the experiment `folder` holds.
+SweepProgress survey_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+
+/// The result from what `folder` holds, without running anything; the error when trials are
+/// missing says how many, and of which shards.
+Result<SweepResult> merge_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+
+/// Path of the trace of a trial with keep_trace.
+std::filesystem::path trace_path(const std::filesystem::path& folder, const std::string& key);
+
+/// Replaces `path` by `text` at once: a reader sees the old text or the new one.
+std::optional<Error> write_atomically(const std::filesystem::path& path, const std::string& text);
+
+}  // namespace pirouette

@@ -1,0 +1,174 @@
+#include "pirouette/trial/run_folder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <vector>
+
+#include "pirouette/plant/terrain.hpp"
+#include "support/temp_folder.hpp"
+
+namespace pirouette {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string content(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+class RunFolderTest : public test::TempFolderTest {
+ protected:
+  /// A complete run whose metrics.json says `metrics`.
+  static void leave_run(const fs::path& path, const std::string& metrics) {
+    Result<RunFolder> folder = RunFolder::open(path);
+    ASSERT_TRUE(folder.ok()) << folder.errors().front().to_string();
+    ASSERT_FALSE(folder.value().write(kRunFile, "x = 1\n"));
+    ASSERT_FALSE(folder.value().write(kMetricsFile, metrics));
+    const auto error = folder.value().commit();
+    ASSERT_FALSE(error) << error->to_string();
+  }
+
+  static std::size_t entries(const fs::path& folder) {
+    return static_cast<std::size_t>(
+        std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+};
+
+TEST_F(RunFolderTest, AppearsOnlyWhenItIsComplete) {
+  const fs::path path = folder_ / "runs" / "a";
+  {
+    Result<RunFolder> folder = RunFolder::open(path);
+    ASSERT_TRUE(folder.ok());
+    ASSERT_FALSE(folder.value().write(kRunFile, "x = 1\n"));
+    EXPECT_FALSE(fs::exists(path));
+    ASSERT_FALSE(folder.value().commit());
+    EXPECT_EQ(content(path / kRunFile), "x = 1\n");
+  }
+  EXPECT_TRUE(fs::exists(path / kRunFile)) << "still there after the object is gone";
+  EXPECT_EQ(entries(folder_ / "runs"), 1u);
+}
+
+TEST_F(RunFolderTest, LeavesNothingWithoutACommit) {
+  {
+    Result<RunFolder> folder = RunFolder::open(folder_ / "deep" / "er" / "a");
+    ASSERT_TRUE(folder.ok());
+    ASSERT_FALSE(folder.value().write(kRunFile, "x = 1\n"));
+    const RunFolder moved = std::move(folder).value();
+    EXPECT_TRUE(fs::exists(moved.file(kRunFile)));
+  }
+  EXPECT_EQ(entries(folder_), 0u);
+}
+
+TEST_F(RunFolderTest, KeepsParentsThatSomebodyElseUsesMeanwhile) {
+  {
+    const Result<RunFolder> folder = RunFolder::open(folder_ / "runs" / "a");
+    ASSERT_TRUE(folder.ok());
+    std::ofstream(folder_ / "runs" / "note") << "mine";
+  }
+  EXPECT_EQ(content(folder_ / "runs" / "note"), "mine");
+}
+
+TEST_F(RunFolderTest, ReplacesAnEarlierRunWhole) {
+  leave_run(folder_ / "a", "1");
+  std::ofstream(folder_ / "a" / "trace.npy") << "of the first run";
+  leave_run(folder_ / "a", "2");
+  EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "2");
+  EXPECT_FALSE(fs::exists(folder_ / "a" / "trace.npy"));
+  EXPECT_EQ(entries(folder_), 1u);
+}
+
+TEST_F(RunFolderTest, KeepsTheEarlierRunWhenTheNewOneFails) {
+  leave_run(folder_ / "a", "1");
+  { ASSERT_TRUE(RunFolder::open(folder_ / "a").ok()); }
+  EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "1");
+  EXPECT_EQ(entries(folder_), 1u);
+}
+
+TEST_F(RunFolderTest, TakesAnEmptyFolderAndATrailingSlash) {
+  fs::create_directory(folder_ / "a");
+  leave_run((folder_ / "a").string() + "/", "1");
+  EXPECT_TRUE(fs::exists(folder_ / "a" / kMetricsFile));
+  EXPECT_EQ(entries(folder_), 1u);
+}
+
+TEST_F(RunFolderTest, FollowsALinkToTheRunItReplaces) {
+  leave_run(folder_ / "a", "1");
+  fs::create_directory_symlink(folder_ / "a", folder_ / "latest");
+  leave_run(folder_ / "latest", "2");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "latest"));
+  EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "2");
+}
+
+TEST_F(RunFolderTest, NeverTouchesAFolderThatIsNoRun) {
+  fs::create_directory(folder_ / "a");
+  std::ofstream(folder_ / "a" / "thesis.tex") << "years";
+  EXPECT_FALSE(RunFolder::open(folder_ / "a").ok());
+  EXPECT_EQ(content(folder_ / "a" / "thesis.tex"), "years");
+  EXPECT_EQ(entries(folder_), 1u);
+}
+
+TEST_F(RunFolderTest, NeverReplacesAFolderThatFilledMeanwhile) {
+  Result<RunFolder> folder = RunFolder::open(folder_ / "a");
+  ASSERT_TRUE(folder.ok());
+  fs::create_directory(folder_ / "a");
+  std::ofstream(folder_ / "a" / "thesis.tex") << "years";
+  EXPECT_TRUE(folder.value().commit());
+  EXPECT_EQ(content(folder_ / "a" / "thesis.tex"), "years");
+}
+
+TEST_F(RunFolderTest, RefusesAFileAnEmptyNameAndAPlaceBelowAFile) {
+  std::ofstream(folder_ / "file") << "x";
+  EXPECT_FALSE(RunFolder::open(folder_ / "file").ok());
+  EXPECT_FALSE(RunFolder::open(folder_ / "file" / "a").ok());
+  EXPECT_FALSE(RunFolder::open("").ok());
+  EXPECT_EQ(content(folder_ / "file"), "x");
+}
+
+TEST_F(RunFolderTest, ReportsAPlaceWhereNothingCanBeWritten) {
+  const Result<RunFolder> folder = RunFolder::open("/proc/pirouette/a");
+  ASSERT_FALSE(folder.ok());
+  EXPECT_EQ(folder.errors().front().file, "/proc/pirouette/a");
+}
+
+TEST_F(RunFolderTest, HoldsTheHeightsOfTheGroundForNumPy) {
+  const Result<RunFolder> folder = RunFolder::open(folder_ / "a");
+  ASSERT_TRUE(folder.ok());
+  Config config;
+  config.plant.terrain = "slope:10+rough:0.04";
+  config.run.seed = 7;
+  ASSERT_FALSE(write_terrain(folder.value(), config));
+
+  const std::string bytes = content(folder.value().file(kTerrainFile));
+  const std::size_t data = bytes.find('\n') + 1;
+  EXPECT_EQ(data % 64, 0U);
+  EXPECT_NE(bytes.find("{'descr': '<f4', 'fortran_order': False, 'shape': (301, 301), }"),
+            bytes.npos);
+  constexpr std::size_t kSide = 301;
+  std::vector<float> heights(kSide * kSide);
+  ASSERT_EQ(bytes.size(), data + heights.size() * sizeof(float));
+  std::memcpy(heights.data(), bytes.data() + data, heights.size() * sizeof(float));
+
+  const Terrain terrain(parse_terrain(config.plant.terrain).value(), 7);
+  const auto at = [&](std::size_t row, std::size_t column) {
+    return heights[row * kSide + column];
+  };
+  EXPECT_FLOAT_EQ(at(0, 0), static_cast<float>(terrain.height({-1.5, -1.5})));
+  EXPECT_FLOAT_EQ(at(0, 300), static_cast<float>(terrain.height({1.5, -1.5})));
+  EXPECT_FLOAT_EQ(at(150, 170), static_cast<float>(terrain.height({0.2, 0.0})));
+}
+
+TEST_F(RunFolderTest, NamesATerrainThatThereIsNot) {
+  const Result<RunFolder> folder = RunFolder::open(folder_ / "a");
+  ASSERT_TRUE(folder.ok());
+  Config config;
+  config.plant.terrain = "moon";
+  EXPECT_EQ(write_terrain(folder.value(), config)->key, "plant.terrain");
+}
+
+}  // namespace
+}  // namespace pirouette
