@@ -95,6 +95,12 @@ test: configure .venv/test.stamp  ## every test; wrong formatting and warnings f
 	@$(CMAKE) --build $(BUILD) --parallel $(JOBS)
 	@$(BIN)/ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --progress
 
+.PHONY: test-quick
+test-quick: configure  ## the unit tests only, in seconds once built
+	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target unit_tests
+	@$(BIN)/ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --progress \
+	  --label-regex unit --label-exclude slow
+
 .PHONY: test-python
 test-python: build python .venv/test.stamp  ## tests of the Python package, some in a headless Chromium
 	@bash scripts/system_packages.sh chromium chromium-driver $(RENDERER)
