@@ -14,11 +14,17 @@ set_target_properties(
 )
 install(TARGETS pirouette_program)
 
+# Without those that show MuJoCo or toml++.
 install(
   DIRECTORY src/pirouette
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
   FILES_MATCHING
   PATTERN "*.hpp"
+  PATTERN "config/*_reader.hpp" EXCLUDE
+  PATTERN "config/toml_node.hpp" EXCLUDE
+  PATTERN "model/robot_map.hpp" EXCLUDE
+  PATTERN "plant/scene.hpp" EXCLUDE
+  PATTERN "plant/spawn.hpp" EXCLUDE
 )
 install(DIRECTORY config experiments robots DESTINATION ${CMAKE_INSTALL_DATADIR}/pirouette)
 
