@@ -101,6 +101,10 @@ test-quick: configure  ## the unit tests only, in seconds once built
 	@$(BIN)/ctest --test-dir $(BUILD) --parallel $(JOBS) --output-on-failure --progress \
 	  --label-regex unit --label-exclude slow
 
+.PHONY: trace-hashes
+trace-hashes: configure  ## what tests/traces expects, written anew after a change that alters traces
+	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target trace_hashes
+
 .PHONY: test-python
 test-python: build python .venv/test.stamp  ## tests of the Python package, some in a headless Chromium
 	@bash scripts/system_packages.sh chromium chromium-driver $(RENDERER)

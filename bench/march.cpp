@@ -9,6 +9,7 @@
 #include "pirouette/config/validate.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::bench {
 
@@ -52,7 +53,7 @@ class Repetition {
   Repetition(const Scenario& scenario, const Config& config)
       : config_(config),
         push_speed_(scenario.push_speed),
-        plant_(Plant::create(config, robot_file(config)).value()) {}
+        plant_(Plant::create(config.plant, plant_setup(config, robot_file(config))).value()) {}
 
   /// Closed loop; leaves the joint commands in `commands`.
   void run(March& out, std::vector<JointCommand>& commands) {

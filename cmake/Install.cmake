@@ -3,7 +3,10 @@ include(CMakePackageConfigHelpers)
 
 set(_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pirouette)
 
-install(TARGETS pirouette pirouette_sim EXPORT pirouetteTargets)
+install(
+  TARGETS pirouette_controller pirouette_config pirouette_world pirouette_study
+  EXPORT pirouetteTargets
+)
 install(EXPORT pirouetteTargets NAMESPACE pirouette:: DESTINATION ${_package_dir})
 # The wheels' shared libraries stay where they are. CMake's own INSTALL_RPATH_USE_LINK_PATH leaves out
 # what lies inside the source tree, as .venv does.
@@ -21,6 +24,7 @@ install(
   FILES_MATCHING
   PATTERN "*.hpp"
   PATTERN "config/*_reader.hpp" EXCLUDE
+  PATTERN "study/*_reader.hpp" EXCLUDE
   PATTERN "config/toml_node.hpp" EXCLUDE
   PATTERN "model/robot_map.hpp" EXCLUDE
   PATTERN "plant/scene.hpp" EXCLUDE

@@ -6,8 +6,8 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/metrics/metrics.hpp"
+#include "pirouette/study/configured_trial.hpp"
 #include "pirouette/trial/trace_file.hpp"
-#include "pirouette/trial/trial.hpp"
 
 namespace pirouette::app {
 

@@ -8,6 +8,7 @@
 #include <string_view>
 #include <system_error>
 
+#include "pirouette/base/math.hpp"
 #include "pirouette/config/toml.hpp"
 
 namespace pirouette::app {

@@ -14,9 +14,9 @@
 
 #include "config_command.hpp"
 #include "exit_code.hpp"
+#include "pirouette/base/version.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/study/repeat_command.hpp"
-#include "pirouette/trial/trial.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
 #include "sweep_command.hpp"

@@ -8,8 +8,8 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/study/configured_trial.hpp"
 #include "pirouette/trial/run_folder.hpp"
-#include "pirouette/trial/trial.hpp"
 #include "progress_bar.hpp"
 #include "realtime.hpp"
 #include "summary.hpp"
@@ -37,7 +37,9 @@ std::optional<Error> save(RunFolder& folder, TraceFile& trace, const Config& con
     return error;
   }
   if (auto error = folder.write(kMetricsFile, to_json(metrics))) return error;
-  if (auto error = write_terrain(folder, config)) return error;
+  if (auto error =
+          write_terrain(folder, config.plant.terrain, static_cast<std::uint64_t>(config.run.seed)))
+    return error;
   return folder.commit();
 }
 

@@ -9,10 +9,11 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "pirouette/base/version.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/validate.hpp"
-#include "pirouette/trial/trial.hpp"
+#include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::python {
 

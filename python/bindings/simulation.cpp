@@ -4,13 +4,13 @@
 #include <utility>
 
 #include "pirouette/config/validate.hpp"
+#include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette {
 namespace {
 
 Result<Plant> create_plant(const Config& config, const std::string& mjcf) {
-  const Vec2 start(config.run.start_offset[0], config.run.start_offset[1]);
-  return Plant::create(config, mjcf, start, radians(config.run.start_yaw_deg));
+  return Plant::create(config.plant, plant_setup(config, mjcf));
 }
 
 }  // namespace

@@ -8,9 +8,9 @@
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/config/config.hpp"
 #include "pirouette/controller/spin_controller.hpp"
-#include "pirouette/trial/trace_file.hpp"
 #include "pirouette/plant/plant.hpp"
 #include "pirouette/plant/terrain.hpp"
+#include "pirouette/trial/trace_file.hpp"
 
 namespace pirouette {
 

@@ -23,16 +23,20 @@ Patterns operator+(Patterns a, const Patterns& b) {
   return a;
 }
 
-const Patterns kBelowStages = {"base/*", "types/*", "config/*", "model/*"};
+const Patterns kBelowStages = {"base/*", "types/*", "model/*"};
 const Patterns kStages = {"gait/*", "foot/*",       "terrain/*", "com/*",
                           "path/*", "estimation/*", "lowlevel/*"};
+/// Parameters of the parts that a file of TOML describes.
+const Patterns kConfigs = {"*/*_config.hpp"};
+const Patterns kWorld = {"controller/*", "runtime/*", "plant/*", "metrics/*", "trial/*"};
+/// path.hpp is the curve against which the walked way is measured.
+const Patterns kBelowTrial = {"base/*", "types/*", "path/path.hpp"};
 
 /// Folder -> which of our headers its files may include, besides the folder's own.
 const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/base", {}},
     {"src/pirouette/types", {"base/*"}},
-    {"src/pirouette/config", {"base/*", "types/*"}},
-    {"src/pirouette/model", {"base/*", "types/*", "config/*"}},
+    {"src/pirouette/model", {"base/*", "types/*"}},
     {"src/pirouette/gait", kBelowStages},
     {"src/pirouette/foot", kBelowStages},
     {"src/pirouette/terrain", kBelowStages},
@@ -41,26 +45,31 @@ const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/estimation", kBelowStages},
     {"src/pirouette/lowlevel", kBelowStages},
     {"src/pirouette/controller", kBelowStages + kStages},
+    {"src/pirouette/config", Patterns{"base/*", "path/path.hpp"} + kConfigs},
     // Of the model only the map of names, which both sides must read alike.
-    {"src/pirouette/plant", {"base/*", "types/*", "config/*", "model/robot_map.hpp"}},
-    // path.hpp is the curve against which the walked way is measured.
-    {"src/pirouette/experiment",
-     {"base/*", "types/*", "config/*", "controller/*", "plant/*", "path/path.hpp"}},
+    {"src/pirouette/plant", {"base/*", "types/*", "model/robot_map.hpp"}},
+    {"src/pirouette/metrics", kBelowTrial},
+    {"src/pirouette/trial", kBelowTrial + Patterns{"controller/*", "plant/*", "metrics/*"}},
+    {"src/pirouette/study", kBelowTrial + kWorld + Patterns{"config/*"}},
+    {"src/pirouette/report", {"base/*", "config/*", "metrics/*", "plant/*", "trial/*", "study/*"}},
 
-    {"apps/pirouette", {"base/*", "config/*", "experiment/*"}},
+    {"apps/pirouette", {"base/*", "config/*", "metrics/*", "trial/*", "study/*", "report/*"}},
     {"python/bindings",
-     {"base/*", "types/*", "config/*", "controller/spin_controller.hpp", "plant/plant.hpp",
-      "plant/terrain.hpp", "experiment/*"}},
-    {"bench", {"base/*", "config/*", "controller/spin_controller.hpp", "plant/plant.hpp"}},
-    {"fuzz", {"base/*", "config/*", "model/robot_model.hpp", "path/path.hpp"}},
+     {"base/*", "types/*", "config/*", "controller/spin_controller.hpp", "path/path.hpp",
+      "plant/plant.hpp", "plant/terrain.hpp", "metrics/*", "trial/*", "study/*"}},
+    {"bench",
+     {"base/*", "config/*", "controller/spin_controller.hpp", "plant/plant.hpp", "study/*"}},
+    {"fuzz", {"base/*", "config/*", "study/*", "model/robot_model.hpp", "path/path.hpp"}},
 };
 
 /// A library, as its includes begin -> the folders that may include it.
 const std::map<std::string, Patterns> kLibraries = {
     {"mujoco/", {"src/pirouette/model", "src/pirouette/plant"}},
-    {"toml++/", {"src/pirouette/config"}},
+    {"toml++/", {"src/pirouette/config", "src/pirouette/study"}},
     {"eiquadprog/", {"src/pirouette/lowlevel"}},
-    {"nlohmann/", {"src/pirouette/experiment"}},
+    {"nlohmann/",
+     {"src/pirouette/metrics", "src/pirouette/trial", "src/pirouette/study",
+      "src/pirouette/report"}},
     {"CLI/", {"apps/pirouette"}},
     {"nanobind/", {"python/bindings"}},
     {"benchmark/", {"bench"}},

@@ -102,7 +102,7 @@ TEST_F(PathFiles, AFileThatIsNotThereOrNotTomlIsNamed) {
 }
 
 TEST_F(PathFiles, RunPathIsAShippedNameOrAFile) {
-  RunConfig run;
+  TrialConfig run;
   for (const std::string& name : known_paths()) {
     run.path = name;
     ASSERT_TRUE(resolve_path(run)) << name;

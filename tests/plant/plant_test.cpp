@@ -18,7 +18,7 @@ constexpr double kMass = 8.912;  ///< kg
 
 TEST(MiniCheetah, HasTheMassAndCentreOfMassOfItsProvenance) {
   const Terrain terrain(FlatGround{}, 0);
-  const Scene scene = build_scene(PlantConfig{}, terrain, kRobot).value();
+  const Scene scene = build_scene(WorldConfig{}, terrain, kRobot).value();
   EXPECT_NEAR(scene.model->body_subtreemass[scene.map.trunk_body], kMass, 1e-9);
 
   const PlantTruth truth = make_plant(ideal_config()).truth();
@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, RobotOnEveryTerrain,
 TEST(Start, SucceedsWhereverTheRobotStandsOnBlocks) {
   Config config = ideal_config("blocks:0.05");
   for (config.run.seed = 1; config.run.seed <= 60; ++config.run.seed) {
-    EXPECT_TRUE(Plant::create(config, kRobot).ok()) << config.run.seed;
+    EXPECT_TRUE(create_plant(config, kRobot).ok()) << config.run.seed;
   }
 }
 
@@ -91,7 +91,7 @@ TEST(Start, NamesWhatItCannotDo) {
   Config config = ideal_config("slope:99");
   config.plant.timestep = 0.0015;
   config.plant.command_latency = 0.001;
-  const Result<Plant> bad = Plant::create(config, kRobot);
+  const Result<Plant> bad = create_plant(config, kRobot);
   ASSERT_FALSE(bad.ok());
   ASSERT_EQ(bad.errors().size(), 3U);  // terrain, timestep and latency, all at once
   EXPECT_EQ(bad.errors()[0].key, "plant.terrain");
@@ -100,10 +100,10 @@ TEST(Start, NamesWhatItCannotDo) {
 
   config = ideal_config();
   config.body.height = 0.6;
-  EXPECT_EQ(Plant::create(config, kRobot).errors().front().key, "body.height");
+  EXPECT_EQ(create_plant(config, kRobot).errors().front().key, "body.height");
   config = ideal_config("rough:0.04");
-  EXPECT_EQ(Plant::create(config, kRobot, Vec2(4.5, 0.0)).errors().front().key, "run.start_offset");
-  EXPECT_EQ(Plant::create(ideal_config(), "nowhere.xml").errors().front().file, "nowhere.xml");
+  EXPECT_EQ(create_plant(config, kRobot, Vec2(4.5, 0.0)).errors().front().key, "run.start_offset");
+  EXPECT_EQ(create_plant(ideal_config(), "nowhere.xml").errors().front().file, "nowhere.xml");
 }
 
 TEST(Motors, ApplyFeedForwardAndFeedbackFromTheTrueJointState) {
@@ -259,7 +259,7 @@ TEST(Truth, IsTheSameInEveryRun) {
 }
 
 TEST(Contacts, HaveExactlyTheConfiguredFriction) {
-  PlantConfig config;
+  WorldConfig config;
   config.friction = 0.37;
   config.torsional_friction = 0.0021;
   config.rolling_friction = 0.00013;
@@ -345,7 +345,7 @@ TEST(Scene, LeavesOutAFloorOfTheRobotsOwn) {
   const SpecPtr owner(spec);
   ASSERT_NE(ModelPtr(mj_compile(spec, nullptr)), nullptr);
   ASSERT_EQ(mj_saveXML(spec, path.c_str(), nullptr, 0), 0);
-  const Scene scene = build_scene(PlantConfig{}, Terrain(FlatGround{}, 0), path).value();
+  const Scene scene = build_scene(WorldConfig{}, Terrain(FlatGround{}, 0), path).value();
   int fixed = 0;
   for (int g = 0; g < scene.model->ngeom; ++g) fixed += scene.model->geom_bodyid[g] == 0;
   EXPECT_EQ(fixed, 1);  // the terrain's

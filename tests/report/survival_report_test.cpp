@@ -9,8 +9,8 @@
 #include <sstream>
 
 #include "pirouette/config/toml.hpp"
-#include "pirouette/study/repeat_command.hpp"
 #include "pirouette/report/trial_table.hpp"
+#include "pirouette/study/repeat_command.hpp"
 #include "support/temp_folder.hpp"
 
 namespace pirouette {

@@ -24,7 +24,7 @@ struct Path {
 /// Three seconds of the closed loop with perfect sensors: standing, then spinning.
 Path spin_for_three_seconds(const std::string& mjcf, const Vec2& xy, double yaw) {
   const Config config = test::ideal_config();
-  Plant plant = Plant::create(config, mjcf, xy, yaw).value();
+  Plant plant = test::create_plant(config, mjcf, xy, yaw).value();
   SpinController controller = SpinController::create(config, mjcf).value();
   controller.reset({plant.truth().base.p_WB, plant.truth().base.R_WB});
   Path path;

@@ -6,7 +6,7 @@
 #include <string>
 #include <utility>
 
-#include "pirouette/plant/plant.hpp"
+#include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::test {
 
@@ -22,8 +22,17 @@ inline Config ideal_config(const std::string& terrain = "flat") {
   return config;
 }
 
+/// `xy` (m) and `yaw` (rad): where the robot starts.
+inline Result<Plant> create_plant(const Config& config, const std::string& mjcf = kRobot,
+                                  const Vec2& xy = Vec2::Zero(), double yaw = 0.0) {
+  PlantSetup setup = plant_setup(config, mjcf);
+  setup.start = xy;
+  setup.start_yaw = yaw;
+  return Plant::create(config.plant, setup);
+}
+
 inline Plant make_plant(const Config& config, const Vec2& xy = Vec2::Zero(), double yaw = 0.0) {
-  Result<Plant> plant = Plant::create(config, kRobot, xy, yaw);
+  Result<Plant> plant = create_plant(config, kRobot, xy, yaw);
   if (!plant) throw std::runtime_error(plant.errors().front().to_string());
   return std::move(plant).value();
 }

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pirouette/config/toml.hpp"
-#include "pirouette/trial/trial.hpp"
+#include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::test {
 

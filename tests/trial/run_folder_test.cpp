@@ -138,10 +138,8 @@ TEST_F(RunFolderTest, ReportsAPlaceWhereNothingCanBeWritten) {
 TEST_F(RunFolderTest, HoldsTheHeightsOfTheGroundForNumPy) {
   const Result<RunFolder> folder = RunFolder::open(folder_ / "a");
   ASSERT_TRUE(folder.ok());
-  Config config;
-  config.plant.terrain = "slope:10+rough:0.04";
-  config.run.seed = 7;
-  ASSERT_FALSE(write_terrain(folder.value(), config));
+  const std::string text = "slope:10+rough:0.04";
+  ASSERT_FALSE(write_terrain(folder.value(), text, 7));
 
   const std::string bytes = content(folder.value().file(kTerrainFile));
   const std::size_t data = bytes.find('\n') + 1;
@@ -153,7 +151,7 @@ TEST_F(RunFolderTest, HoldsTheHeightsOfTheGroundForNumPy) {
   ASSERT_EQ(bytes.size(), data + heights.size() * sizeof(float));
   std::memcpy(heights.data(), bytes.data() + data, heights.size() * sizeof(float));
 
-  const Terrain terrain(parse_terrain(config.plant.terrain).value(), 7);
+  const Terrain terrain(parse_terrain(text).value(), 7);
   const auto at = [&](std::size_t row, std::size_t column) {
     return heights[row * kSide + column];
   };
@@ -165,9 +163,7 @@ TEST_F(RunFolderTest, HoldsTheHeightsOfTheGroundForNumPy) {
 TEST_F(RunFolderTest, NamesATerrainThatThereIsNot) {
   const Result<RunFolder> folder = RunFolder::open(folder_ / "a");
   ASSERT_TRUE(folder.ok());
-  Config config;
-  config.plant.terrain = "moon";
-  EXPECT_EQ(write_terrain(folder.value(), config)->key, "plant.terrain");
+  EXPECT_EQ(write_terrain(folder.value(), "moon", 7)->key, "plant.terrain");
 }
 
 }  // namespace

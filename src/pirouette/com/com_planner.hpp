@@ -5,7 +5,7 @@
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/com/com_config.hpp"
 #include "pirouette/types/com_plan.hpp"
 #include "pirouette/types/gait_phase.hpp"
 

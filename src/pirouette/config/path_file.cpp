@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "pirouette/base/rotation.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml_node.hpp"
 #include "pirouette/config/validate.hpp"
@@ -151,7 +152,7 @@ Result<PathFile> load_path_file(const fs::path& file) {
 
 std::vector<std::string> known_paths() { return toml_stems(paths_folder()); }
 
-Result<fs::path> resolve_path(const RunConfig& run) {
+Result<fs::path> resolve_path(const TrialConfig& run) {
   const fs::path path = run.path;
   if (path.extension() == ".toml") {
     if (fs::is_regular_file(path)) return path;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <vector>
 
+#include "pirouette/base/math.hpp"
 #include "pirouette/base/result.hpp"
 #include "pirouette/config/config.hpp"
 
@@ -29,7 +30,7 @@ Result<PathFile> load_path_file(const std::filesystem::path& file);
 
 /// File of run.path: experiments/paths/<run.path>.toml of the data folder, or run.path itself when
 /// that ends in .toml.
-Result<std::filesystem::path> resolve_path(const RunConfig& run);
+Result<std::filesystem::path> resolve_path(const TrialConfig& run);
 
 /// Names under experiments/paths of the data folder, sorted.
 std::vector<std::string> known_paths();

@@ -1,7 +1,6 @@
 // The body reference, now and over the MPC's horizon.
 #pragma once
 
-#include "pirouette/config/config.hpp"
 #include "pirouette/lowlevel/convex_mpc.hpp"
 #include "pirouette/terrain/plane_estimator.hpp"
 #include "pirouette/types/body_reference.hpp"

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pirouette/base/legs.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/controller/joint_config.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/leg_geometry.hpp"
 

@@ -1,10 +1,10 @@
 // The ground as the feet have met it: plane, kind of ground, remembered treads.
 #pragma once
 
-#include "pirouette/config/config.hpp"
 #include "pirouette/terrain/foothold_memory.hpp"
 #include "pirouette/terrain/ground_classifier.hpp"
 #include "pirouette/terrain/plane_estimator.hpp"
+#include "pirouette/terrain/terrain_config.hpp"
 #include "pirouette/types/tick_trace.hpp"
 
 namespace pirouette {

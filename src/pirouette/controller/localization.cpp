@@ -2,7 +2,7 @@
 
 namespace pirouette {
 
-Localization::Localization(const Config& config, const PerLeg<LegGeometry>& legs)
+Localization::Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs)
     : config_(config),
       legs_(legs),
       foot_(config.foot.model, legs[Leg::kFR].foot_radius),

@@ -1,7 +1,7 @@
 // From sensors to state: attitude, leg odometry, contacts and creep, on one foot policy.
 #pragma once
 
-#include "pirouette/config/config.hpp"
+#include "pirouette/controller/controller_config.hpp"
 #include "pirouette/estimation/attitude_filter.hpp"
 #include "pirouette/estimation/leg_odometry_filter.hpp"
 #include "pirouette/estimation/spin_creep.hpp"
@@ -14,7 +14,7 @@ namespace pirouette {
 
 class Localization {
  public:
-  Localization(const Config& config, const PerLeg<LegGeometry>& legs);
+  Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs);
 
   void reset(const BasePose& start);
 
@@ -40,7 +40,7 @@ class Localization {
   CreepInput creep_input(const TickTrace& trace) const;
   Vec3 contact_normal(const TickTrace& trace) const;
 
-  Config config_;
+  ControllerConfig config_;
   PerLeg<LegGeometry> legs_;
   RollingFoot foot_;
   AttitudeFilter attitude_filter_;

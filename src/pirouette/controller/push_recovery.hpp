@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/gait/gait_config.hpp"
 
 namespace pirouette {
 

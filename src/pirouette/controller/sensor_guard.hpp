@@ -1,7 +1,7 @@
 // First station of a tick: what of the inputs can be believed.
 #pragma once
 
-#include "pirouette/config/config.hpp"
+#include "pirouette/controller/safety_config.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
 #include "pirouette/types/sensor_reading.hpp"

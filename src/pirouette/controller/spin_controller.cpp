@@ -51,7 +51,7 @@ Vec2 hip_centre(const PerLeg<LegGeometry>& legs) {
 }  // namespace
 
 struct SpinController::Impl {
-  Impl(const Config& c, RobotModel robot)
+  Impl(const ControllerConfig& c, RobotModel robot)
       : config(c),
         model(std::move(robot)),
         legs(model.legs()),
@@ -99,7 +99,7 @@ struct SpinController::Impl {
   bool has_fallen() const;
   void stand_down(ControllerStatus why);
 
-  Config config;
+  ControllerConfig config;
   RobotModel model;
   PerLeg<LegGeometry> legs;
   PerLeg<Vec3> posture;  ///< rad, nominal joint angles
@@ -407,7 +407,8 @@ void SpinController::Impl::stand_down(ControllerStatus why) {
   trace.command = damped_stand_down(config.joint.kd_stand);
 }
 
-Result<SpinController> SpinController::create(const Config& config, const std::string& mjcf) {
+Result<SpinController> SpinController::create(const ControllerConfig& config,
+                                              const std::string& mjcf) {
   Result<RobotModel> model = RobotModel::load(mjcf);
   if (!model.ok()) return model.errors();
   return SpinController(std::make_unique<Impl>(config, std::move(model).value()));

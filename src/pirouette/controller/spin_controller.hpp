@@ -6,7 +6,7 @@
 #include <string>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/controller/controller_config.hpp"
 #include "pirouette/path/path.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
@@ -24,7 +24,7 @@ struct TickTiming {
 class SpinController {
  public:
   /// Loads the robot's own model from `mjcf`.
-  static Result<SpinController> create(const Config& config, const std::string& mjcf);
+  static Result<SpinController> create(const ControllerConfig& config, const std::string& mjcf);
 
   SpinController(SpinController&&) noexcept;
   SpinController& operator=(SpinController&&) noexcept;

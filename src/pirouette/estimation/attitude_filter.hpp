@@ -3,7 +3,7 @@
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/estimation/estimation_config.hpp"
 
 namespace pirouette {
 

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/foot/foot_config.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/foot_state.hpp"

@@ -4,7 +4,7 @@
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/planar_twist.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/gait/gait_config.hpp"
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/foothold_plan.hpp"
 #include "pirouette/types/gait_phase.hpp"

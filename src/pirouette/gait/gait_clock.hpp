@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "pirouette/base/legs.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/gait/gait_config.hpp"
 #include "pirouette/types/gait_phase.hpp"
 
 namespace pirouette {

@@ -7,10 +7,10 @@
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/rotation.hpp"
-#include "pirouette/config/config.hpp"
 #include "pirouette/lowlevel/force_recursion.hpp"
 #include "pirouette/lowlevel/friction_pyramid.hpp"
 #include "pirouette/lowlevel/least_distance.hpp"
+#include "pirouette/lowlevel/mpc_config.hpp"
 #include "pirouette/types/contact_forces.hpp"
 
 namespace pirouette {

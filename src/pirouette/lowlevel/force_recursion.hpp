@@ -7,7 +7,7 @@
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/lowlevel/mpc_config.hpp"
 
 namespace pirouette {
 

@@ -1,8 +1,8 @@
 // Whole-body control: contact-consistent accelerations, refined contact forces, joint torques.
 #pragma once
-
-#include "pirouette/config/config.hpp"
+#include "pirouette/lowlevel/mpc_config.hpp"
 #include "pirouette/lowlevel/qp_solver.hpp"
+#include "pirouette/lowlevel/wbc_config.hpp"
 #include "pirouette/model/robot_model.hpp"
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/contact_forces.hpp"

@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
 #include "pirouette/path/path.hpp"
+#include "pirouette/path/path_config.hpp"
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/motion_command.hpp"
 #include "pirouette/types/robot_state.hpp"

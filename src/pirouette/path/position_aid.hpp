@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/path/path_config.hpp"
 #include "pirouette/types/sensor_reading.hpp"
 
 namespace pirouette {

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/path/path_config.hpp"
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/robot_state.hpp"
 

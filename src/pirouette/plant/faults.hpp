@@ -6,7 +6,7 @@
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/plant/fault_config.hpp"
 #include "pirouette/plant/random.hpp"
 #include "pirouette/types/sensor_reading.hpp"
 

@@ -100,13 +100,13 @@ PlantTruth lost_truth(double time) {
 }
 
 /// Each motor's torque constant over the nominal one, of this seed.
-PerLeg<Vec3> draw_torque_scales(const Config& config) {
-  RandomStream random(static_cast<std::uint64_t>(config.run.seed), RandomPurpose::kTorqueConstants);
+PerLeg<Vec3> draw_torque_scales(const WorldConfig& config, std::uint64_t seed) {
+  RandomStream random(seed, RandomPurpose::kTorqueConstants);
   PerLeg<Vec3> scales;
   for (const Leg leg : kLegs) {
     for (double& scale : scales[leg]) {
-      const double deviation = config.plant.torque_scale_spread * (2.0 * random.uniform() - 1.0);
-      scale = config.plant.torque_scale * (1.0 + deviation);
+      const double deviation = config.torque_scale_spread * (2.0 * random.uniform() - 1.0);
+      scale = config.torque_scale * (1.0 + deviation);
     }
   }
   return scales;
@@ -125,20 +125,19 @@ std::optional<std::size_t> whole_periods(double duration, double period) {
 std::string physics_version() { return mj_versionString(); }
 
 struct Plant::Impl {
-  Impl(const Config& config, const Terrain& ground, Scene scene, std::size_t delay,
-       std::size_t steps)
+  Impl(const WorldConfig& config, const PlantSetup& setup, const Terrain& ground, Scene scene,
+       std::size_t delay, std::size_t steps)
       : terrain(ground),
         model(std::move(scene.model)),
         map(scene.map),
         data(mj_makeData(model.get())),
-        sensors(config.plant.sensors, static_cast<std::uint64_t>(config.run.seed)),
-        faults(config.plant.faults, static_cast<std::uint64_t>(config.run.seed),
-               1.0 / config.control.rate),
+        sensors(config.sensors, setup.seed),
+        faults(config.faults, setup.seed, setup.period),
         command_delay(delay),
         steps_per_tick(steps),
-        friction(config.plant.friction),
-        torque_scale(draw_torque_scales(config)),
-        shows_truth(config.estimation.source == EstimatorSource::kTruth) {}
+        friction(config.friction),
+        torque_scale(draw_torque_scales(config, setup.seed)),
+        shows_truth(setup.shows_truth) {}
 
   /// Motor torques of `command` at the present joint state, into `truth` and the simulation.
   void drive_motors(const JointCommand& command);
@@ -282,35 +281,34 @@ void Plant::Impl::observe() {
   }
 }
 
-Result<Plant> Plant::create(const Config& config, const std::string& mjcf, const Vec2& xy,
-                            double yaw) {
+Result<Plant> Plant::create(const WorldConfig& config, const PlantSetup& setup) {
   Errors errors;
-  const Result<TerrainSpec> spec = parse_terrain(config.plant.terrain);
+  const Result<TerrainSpec> spec = parse_terrain(config.terrain);
   if (!spec) errors = spec.errors();
-  const std::optional<std::size_t> steps =
-      whole_periods(1.0 / config.control.rate, config.plant.timestep);
+  const std::optional<std::size_t> steps = whole_periods(setup.period, config.timestep);
   if (!steps || *steps == 0) {
     errors.push_back({"", 0, "plant.timestep", "must divide the control period, 1 / control.rate"});
   }
-  const std::optional<std::size_t> delay =
-      whole_periods(config.plant.command_latency, config.plant.timestep);
+  const std::optional<std::size_t> delay = whole_periods(config.command_latency, config.timestep);
   if (!delay) {
     errors.push_back({"", 0, "plant.command_latency",
                       "must be a whole number of physics steps, plant.timestep"});
   }
   if (!errors.empty()) return errors;
 
-  const Terrain terrain(spec.value(), static_cast<std::uint64_t>(config.run.seed));
-  if (xy.cwiseAbs().maxCoeff() > terrain.half_extent() - kStartMargin) {
+  const Terrain terrain(spec.value(), setup.seed);
+  if (setup.start.cwiseAbs().maxCoeff() > terrain.half_extent() - kStartMargin) {
     return Error{"", 0, "run.start_offset",
                  "the start is nearer than 1 m to the edge of this terrain, which ends " +
                      std::to_string(terrain.half_extent()) + " m from the origin"};
   }
-  Result<Scene> scene = build_scene(config.plant, terrain, mjcf);
+  Result<Scene> scene = build_scene(config, terrain, setup.mjcf);
   if (!scene) return scene.errors();
 
-  auto impl = std::make_unique<Impl>(config, terrain, std::move(scene).value(), *delay, *steps);
-  errors = stand_robot(*impl->model, impl->map, terrain, xy, yaw, config.body.height, *impl->data);
+  auto impl =
+      std::make_unique<Impl>(config, setup, terrain, std::move(scene).value(), *delay, *steps);
+  errors = stand_robot(*impl->model, impl->map, terrain, setup.start, setup.start_yaw,
+                       setup.com_height, *impl->data);
   if (!errors.empty()) return errors;
   impl->begin_step();
   impl->observe();

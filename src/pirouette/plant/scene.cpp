@@ -21,7 +21,7 @@ bool floats(mjsBody* body) {
 }
 
 /// A ball on the trunk, of even density. Without a trunk the robot's map says what is missing.
-void add_payload(const PlantConfig& config, mjSpec& spec) {
+void add_payload(const WorldConfig& config, mjSpec& spec) {
   constexpr double kRadius = 0.05;  // m
   for (mjsElement* e = mjs_firstElement(&spec, mjOBJ_BODY); e; e = mjs_nextElement(&spec, e)) {
     mjsBody* trunk = mjs_asBody(e);
@@ -38,7 +38,7 @@ void add_payload(const PlantConfig& config, mjSpec& spec) {
 }
 
 /// The trunk weighs and balances otherwise than the robot file says.
-void falsify_trunk(const PlantConfig& config, int trunk, mjModel& model) {
+void falsify_trunk(const WorldConfig& config, int trunk, mjModel& model) {
   model.body_mass[trunk] *= config.trunk_mass_scale;
   Eigen::Map<Vec3>(model.body_inertia + 3 * trunk) *= config.trunk_mass_scale;
   Eigen::Map<Vec3>(model.body_ipos + 3 * trunk) +=
@@ -47,7 +47,7 @@ void falsify_trunk(const PlantConfig& config, int trunk, mjModel& model) {
   mj_setConst(&model, data.get());
 }
 
-mjOption physics_options(const PlantConfig& config) {
+mjOption physics_options(const WorldConfig& config) {
   mjOption option;
   mj_defaultOption(&option);
   option.timestep = config.timestep;
@@ -62,7 +62,7 @@ mjOption physics_options(const PlantConfig& config) {
 
 }  // namespace
 
-Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
+Result<Scene> build_scene(const WorldConfig& config, const Terrain& terrain,
                           const std::string& mjcf) {
   std::array<char, 1024> message{};
   const SpecPtr spec(
@@ -83,7 +83,7 @@ Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
   Result<RobotMap> map = map_robot(model, mjcf);
   if (!map) return map.errors();
   scene.map = map.value();
-  if (config.trunk_mass_scale != 1.0 || config.trunk_com_offset != PlantConfig{}.trunk_com_offset)
+  if (config.trunk_mass_scale != 1.0 || config.trunk_com_offset != WorldConfig{}.trunk_com_offset)
     falsify_trunk(config, scene.map.trunk_body, model);
 
   const int foot_priority =

@@ -7,9 +7,9 @@
 #include <string>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
 #include "pirouette/model/robot_map.hpp"
 #include "pirouette/plant/terrain.hpp"
+#include "pirouette/plant/world_config.hpp"
 
 namespace pirouette {
 
@@ -33,7 +33,7 @@ struct Scene {
 /// MuJoCo uses exactly these values wherever a foot touches. Friction and damping of the joints are
 /// the file's, times the configured factors; the trunk's mass and CoM are off by what is
 /// configured, and a payload is on it.
-Result<Scene> build_scene(const PlantConfig& config, const Terrain& terrain,
+Result<Scene> build_scene(const WorldConfig& config, const Terrain& terrain,
                           const std::string& mjcf);
 
 /// Gives each foot the sliding friction of the terrain below it, `elsewhere` where that has none of

@@ -5,8 +5,8 @@
 #include <deque>
 #include <optional>
 
-#include "pirouette/config/config.hpp"
 #include "pirouette/plant/random.hpp"
+#include "pirouette/plant/sensor_config.hpp"
 #include "pirouette/types/plant_truth.hpp"
 #include "pirouette/types/sensor_reading.hpp"
 

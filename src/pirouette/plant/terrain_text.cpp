@@ -4,7 +4,7 @@
 #include <cmath>
 #include <optional>
 
-#include "pirouette/config/fields.hpp"
+#include "pirouette/base/fields.hpp"
 #include "pirouette/plant/terrain.hpp"
 
 namespace pirouette {

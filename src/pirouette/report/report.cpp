@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "pirouette/report/report_format.hpp"
 #include "pirouette/metrics/statistics.hpp"
+#include "pirouette/report/report_format.hpp"
 
 namespace pirouette {
 namespace {

@@ -1,11 +1,11 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "pirouette/base/version.hpp"
 #include "pirouette/config/config_doc.hpp"
-#include "pirouette/report/report_format.hpp"
-#include "pirouette/trial/trial.hpp"
 #include "pirouette/plant/plant.hpp"
 #include "pirouette/plant/terrain.hpp"
+#include "pirouette/report/report_format.hpp"
 
 namespace pirouette {
 namespace {

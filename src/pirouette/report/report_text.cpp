@@ -4,11 +4,11 @@
 #include <set>
 #include <sstream>
 
+#include "pirouette/base/version.hpp"
 #include "pirouette/config/suggest.hpp"
-#include "pirouette/report/report_format.hpp"
 #include "pirouette/metrics/statistics.hpp"
-#include "pirouette/trial/trial.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/report/report_format.hpp"
 
 namespace pirouette {
 namespace {

@@ -6,11 +6,11 @@
 #include <sstream>
 #include <tuple>
 
-#include "pirouette/study/repeat_command.hpp"
-#include "pirouette/report/report_format.hpp"
+#include "pirouette/base/version.hpp"
 #include "pirouette/metrics/statistics.hpp"
-#include "pirouette/trial/trial.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/report/report_format.hpp"
+#include "pirouette/study/repeat_command.hpp"
 
 namespace pirouette {
 namespace {

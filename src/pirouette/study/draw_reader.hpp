@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "pirouette/study/experiment_draw.hpp"
-#include "pirouette/config/table_reader.hpp"
+#include "pirouette/study/table_reader.hpp"
 
 namespace pirouette {
 

@@ -6,11 +6,11 @@
 #include <utility>
 
 #include "pirouette/config/config_doc.hpp"
-#include "pirouette/study/experiment_reader.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
 #include "pirouette/config/validate.hpp"
+#include "pirouette/study/experiment_reader.hpp"
 
 namespace pirouette {
 namespace {

@@ -4,9 +4,9 @@
 #include <set>
 #include <utility>
 
-#include "pirouette/study/draw_reader.hpp"
 #include "pirouette/config/suggest.hpp"
-#include "pirouette/config/table_reader.hpp"
+#include "pirouette/study/draw_reader.hpp"
+#include "pirouette/study/table_reader.hpp"
 
 namespace pirouette {
 namespace {

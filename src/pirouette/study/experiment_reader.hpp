@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/study/experiment_file.hpp"
 #include "pirouette/config/toml_node.hpp"
+#include "pirouette/study/experiment_file.hpp"
 
 namespace pirouette {
 

@@ -11,13 +11,14 @@
 #include <thread>
 
 #include "pirouette/base/fingerprint.hpp"
+#include "pirouette/base/version.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/path_file.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/validate.hpp"
-#include "pirouette/trial/trace_file.hpp"
-#include "pirouette/trial/trial.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/study/configured_trial.hpp"
+#include "pirouette/trial/trace_file.hpp"
 
 namespace pirouette {
 namespace {

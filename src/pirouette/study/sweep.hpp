@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/study/experiment_file.hpp"
 #include "pirouette/metrics/metric_values.hpp"
+#include "pirouette/study/experiment_file.hpp"
 #include "pirouette/study/results_log.hpp"
 
 namespace pirouette {

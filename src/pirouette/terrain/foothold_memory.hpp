@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/terrain/terrain_config.hpp"
 #include "pirouette/types/terrain_plane.hpp"
 
 namespace pirouette {

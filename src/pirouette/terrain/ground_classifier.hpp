@@ -5,7 +5,7 @@
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/terrain/terrain_config.hpp"
 #include "pirouette/types/ground_estimate.hpp"
 
 namespace pirouette {

@@ -7,7 +7,7 @@
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/rotation.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/terrain/terrain_config.hpp"
 #include "pirouette/types/terrain_plane.hpp"
 
 namespace pirouette {

@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
-#include "pirouette/trial/npy.hpp"
 #include "pirouette/plant/terrain.hpp"
+#include "pirouette/trial/npy.hpp"
 
 namespace pirouette {
 namespace {
@@ -105,10 +105,11 @@ std::optional<Error> RunFolder::commit() {
   return std::nullopt;
 }
 
-std::optional<Error> write_terrain(const RunFolder& folder, const Config& config) {
-  const Result<TerrainSpec> spec = parse_terrain(config.plant.terrain);
+std::optional<Error> write_terrain(const RunFolder& folder, const std::string& text,
+                                   std::uint64_t seed) {
+  const Result<TerrainSpec> spec = parse_terrain(text);
   if (!spec) return spec.errors().front();
-  const Terrain terrain(spec.value(), static_cast<std::uint64_t>(config.run.seed));
+  const Terrain terrain(spec.value(), seed);
 
   const int half = static_cast<int>(std::lround(kTerrainHalfExtent / kTerrainPitch));
   const std::string side = std::to_string(2 * half + 1);

@@ -2,13 +2,13 @@
 // nothing.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
 
 namespace pirouette {
 
@@ -47,8 +47,10 @@ class RunFolder {
   std::vector<std::filesystem::path> created_parents_;  ///< deepest first
 };
 
-/// Writes terrain.npy: heights (m, float32) of the ground of config.plant.terrain on a square grid
-/// about the world's origin, rows along y, columns along x, from the least to the largest.
-std::optional<Error> write_terrain(const RunFolder& folder, const Config& config);
+/// Writes terrain.npy: heights (m, float32) of the ground of `terrain`, a text of
+/// parse_terrain(), on a square grid about the world's origin, rows along y, columns along x, from
+/// the least to the largest.
+std::optional<Error> write_terrain(const RunFolder& folder, const std::string& terrain,
+                                   std::uint64_t seed);
 
 }  // namespace pirouette

@@ -3,13 +3,31 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/controller/controller_config.hpp"
 #include "pirouette/metrics/metrics.hpp"
+#include "pirouette/path/path.hpp"
+#include "pirouette/plant/plant.hpp"
 #include "pirouette/trial/trace_file.hpp"
+#include "pirouette/trial/trial_config.hpp"
+#include "pirouette/types/motion_command.hpp"
 
 namespace pirouette {
+
+/// Everything that a trial needs, from wherever it comes. study/configured_trial.hpp makes one of a
+/// Config.
+struct TrialSetup {
+  ControllerConfig controller;
+  WorldConfig world;
+  PlantSetup plant;
+  TrialConfig trial;
+  MotionCommand motion;      ///< in force after gait.stand_time
+  std::optional<Path> path;  ///< to walk along, in a frame of its own
+  /// What metrics.json says about the run; point and duration are added by the trial.
+  RunContext context;
+};
 
 /// How far a running trial is.
 struct TrialProgress {
@@ -34,20 +52,16 @@ struct TrialResult {
   bool interrupted = false;  ///< progress returned false
 };
 
-/// Version of this library and the commit it was built from; "unknown" outside a git checkout.
-const char* version();
-const char* commit();
+/// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, a
+/// length of more than 10^6 s.
+Errors check_trial(const TrialSetup& setup);
 
-/// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, the
-/// path, a length of more than 10^6 s.
-Errors check_trial(const Config& config);
-
-/// Stands for gait.stand_time, then commands run.velocity and run.rate, or run.path; records after
-/// run.settle_time until run.turns are due; without a yaw rate each turn counts 10 s, and run.path
-/// is walked run.laps times, once when open. Ends early when the robot falls: the trunk leans more
-/// than 1 rad from the terrain's normal, the CoM is lower than 0.1 m (small robots: 0.4
-/// body.height) above ground, the truth is not finite, or the controller has stood down for 1 s.
-/// The same config gives the same rows bit for bit.
-Result<TrialResult> run_trial(const Config& config, const TrialOptions& options = {});
+/// Stands for gait.stand_time, then commands the motion; records after settle_time until the turns
+/// are due; without a yaw rate each turn counts 10 s, and a path is walked `laps` times, once when
+/// open. Ends early when the robot falls: the trunk leans more
+/// than 1 rad from the terrain's normal, the CoM is lower than 0.1 m (small robots: 0.4 of its
+/// height when standing) above ground, the truth is not finite, or the controller has stood down
+/// for 1 s. The same setup gives the same rows bit for bit.
+Result<TrialResult> run_trial(const TrialSetup& setup, const TrialOptions& options = {});
 
 }  // namespace pirouette

@@ -3,8 +3,8 @@
 
 #include <array>
 
+#include "pirouette/base/fields.hpp"
 #include "pirouette/base/legs.hpp"
-#include "pirouette/config/fields.hpp"
 
 namespace pirouette {
 

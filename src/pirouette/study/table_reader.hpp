@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "pirouette/study/experiment_reader.hpp"
 #include "pirouette/config/toml_node.hpp"
+#include "pirouette/study/experiment_reader.hpp"
 
 namespace pirouette {
 

@@ -1,4 +1,4 @@
-#include "pirouette/config/table_reader.hpp"
+#include "pirouette/study/table_reader.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,6 +1,13 @@
 // How a parameter declares itself: one line with name, unit, range and meaning. Loader, range
 // check, dump and the documentation table all walk these lines (config/toml.cpp,
 // config/config_doc.cpp).
+//
+// A struct of parameters has a static `fields(self, visit)` that calls, one line a parameter,
+//   visit(self.member, "key", "unit", Range{min, max}, "meaning")
+// for a number or a fixed-size list of numbers, and
+//   visit(self.member, "key", "meaning")
+// for a bool, an enum, a string or a nested group.
+// `self` is a const or mutable reference, so the same list serves reading and writing.
 #pragma once
 
 #include <array>
@@ -15,7 +22,7 @@ struct Range {
   double max;
 };
 
-/// Names of an enum's values in declaration order; specialised beside each enum in config.hpp.
+/// Names of an enum's values in declaration order; specialised beside each enum.
 template <class Enum>
 struct EnumNames;
 
