@@ -1,4 +1,4 @@
-// --path FILE.toml: what loads is a curve that can be followed, finite everywhere.
+// --path FILE.toml: what loads is finite everywhere, or turns back on itself.
 #include <cmath>
 
 #include "input_file.hpp"
@@ -22,7 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const PathFile& in = loaded.value();
   const std::optional<Path> path = Path::spline(in.points, in.closed);
-  require(path.has_value(), "checked points make a path");
+  if (!path) return 0;  // run_trial says that the path turns back on itself
   constexpr int kSamples = 16;
   for (int i = 0; i <= kSamples; ++i) {
     const double s = path->length() * i / kSamples;
