@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
 
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/runtime/control_loop.hpp"
 #include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::bench {
@@ -48,71 +50,81 @@ T& note(std::vector<T>& samples, std::size_t i, double us) {
   return sample;
 }
 
-class Repetition {
+/// The robot of a scenario, pushed once a second from all sides, its parts timed.
+class TimedWorld final : public World {
  public:
-  Repetition(const Scenario& scenario, const Config& config)
-      : config_(config),
-        push_speed_(scenario.push_speed),
+  TimedWorld(const Scenario& scenario, const Config& config)
+      : push_speed_(scenario.push_speed),
         plant_(Plant::create(config.plant, plant_setup(config, robot_file(config))).value()) {}
 
-  /// Closed loop; leaves the joint commands in `commands`.
-  void run(March& out, std::vector<JointCommand>& commands) {
-    SpinController controller = SpinController::create(config_, robot_file(config_)).value();
-    const BaseTruth& start = plant_.truth().base;
-    controller.reset({start.p_WB, start.R_WB});
-    MotionCommand command;
-    command.walk = true;
-    command.yaw_rate = config_.run.rate;
-    std::size_t solution = 0;
-    for (int tick = -kWarmUpTicks; tick < kTimedTicks; ++tick) {
-      push(tick);
-      const auto t0 = Clock::now();
-      const SensorReading sensors = plant_.sense();
-      const auto t1 = Clock::now();
-      commands.push_back(controller.tick(sensors, command));
-      const auto t2 = Clock::now();
-      plant_.advance(commands.back());
-      const auto t3 = Clock::now();
-      if (is_stood_down(controller.status())) throw std::runtime_error("march: the robot fell");
-      if (tick < 0) continue;
-      const auto i = static_cast<std::size_t>(tick);
-      note(out.physics_step, i, microseconds(t3 - t2) / out.steps_per_period);
-      note(out.tick, i, microseconds(t2 - t1));
-      note(out.period, i, microseconds(t3 - t0));
-      note(out.wbc, i, controller.timing().wbc_us);
-      if (controller.timing().mpc_us == 0.0) continue;
-      MpcSample& mpc = note(out.mpc, solution++, controller.timing().mpc_us);
-      mpc.constrained = controller.trace().mpc.status == SolveStatus::kConstrained;
-      mpc.iterations = controller.trace().mpc.iterations;
-    }
+  double period() const override { return plant_.period(); }
+  std::optional<SensorReading> sense() override {
+    push();
+    const auto begin = Clock::now();
+    SensorReading reading = plant_.sense();
+    sense_us = microseconds(Clock::now() - begin);
+    return reading;
   }
-
-  /// The plant alone, driven by `commands`.
-  void replay(March& out, const std::vector<JointCommand>& commands) {
-    for (int tick = -kWarmUpTicks; tick < kTimedTicks; ++tick) {
-      push(tick);
-      const auto begin = Clock::now();
-      plant_.advance(commands[static_cast<std::size_t>(tick + kWarmUpTicks)]);
-      const auto end = Clock::now();
-      if (tick < 0) continue;
-      note(out.replayed_step, static_cast<std::size_t>(tick),
-           microseconds(end - begin) / out.steps_per_period);
-    }
+  void send(const JointCommand& command) override {
+    const auto begin = Clock::now();
+    plant_.advance(command);
+    send_us = microseconds(Clock::now() - begin);
+    ++tick_;
   }
+  const PlantTruth* truth() const override { return &plant_.truth(); }
 
-  Vec3 position() const { return plant_.truth().base.p_WB; }
-
- private:
-  void push(int tick) {
-    if (push_speed_ == 0.0 || tick < 0 || tick % kTicksBetweenPushes != 0) return;
-    const double direction = kGoldenAngle * tick / kTicksBetweenPushes;
+  void push() {
+    if (push_speed_ == 0.0 || tick_ < 0 || tick_ % kTicksBetweenPushes != 0) return;
+    const double direction = kGoldenAngle * tick_ / kTicksBetweenPushes;
     plant_.push(push_speed_ * Vec3(std::cos(direction), std::sin(direction), 0.0));
   }
 
-  Config config_;
+  double sense_us = 0.0, send_us = 0.0;  ///< of the last call
+
+ private:
   double push_speed_;
   Plant plant_;
+  int tick_ = -kWarmUpTicks;
 };
+
+/// Closed loop; leaves the joint commands in `commands`.
+void run_closed_loop(const Config& config, TimedWorld& world, March& out,
+                     std::vector<JointCommand>& commands) {
+  SpinController controller = SpinController::create(config, robot_file(config)).value();
+  const BaseTruth& start = world.truth()->base;
+  controller.reset({start.p_WB, start.R_WB});
+  MotionCommand command;
+  command.walk = true;
+  command.yaw_rate = config.run.rate;
+  ControlLoop loop(world, controller);
+  std::size_t solution = 0;
+  for (int tick = -kWarmUpTicks; tick < kTimedTicks; ++tick) {
+    const double tick_us = loop.tick(command)->tick_us;
+    commands.push_back(controller.trace().command);
+    loop.send();
+    if (is_stood_down(controller.status())) throw std::runtime_error("march: the robot fell");
+    if (tick < 0) continue;
+    const auto i = static_cast<std::size_t>(tick);
+    note(out.physics_step, i, world.send_us / out.steps_per_period);
+    note(out.tick, i, tick_us);
+    note(out.period, i, world.sense_us + tick_us + world.send_us);
+    note(out.wbc, i, controller.timing().wbc_us);
+    if (controller.timing().mpc_us == 0.0) continue;
+    MpcSample& mpc = note(out.mpc, solution++, controller.timing().mpc_us);
+    mpc.constrained = controller.trace().mpc.status == SolveStatus::kConstrained;
+    mpc.iterations = controller.trace().mpc.iterations;
+  }
+}
+
+/// The plant alone, driven by `commands`.
+void replay(TimedWorld& world, March& out, const std::vector<JointCommand>& commands) {
+  for (int tick = -kWarmUpTicks; tick < kTimedTicks; ++tick) {
+    world.push();
+    world.send(commands[static_cast<std::size_t>(tick + kWarmUpTicks)]);
+    if (tick < 0) continue;
+    note(out.replayed_step, static_cast<std::size_t>(tick), world.send_us / out.steps_per_period);
+  }
+}
 
 }  // namespace
 
@@ -126,10 +138,10 @@ March march(const Scenario& scenario) {
   commands.reserve(kWarmUpTicks + kTimedTicks);
   for (int i = 0; i < kRepetitions; ++i) {
     commands.clear();
-    Repetition closed_loop(scenario, config), plant_alone(scenario, config);
-    closed_loop.run(out, commands);
-    plant_alone.replay(out, commands);
-    if (closed_loop.position() != plant_alone.position()) {
+    TimedWorld closed_loop(scenario, config), plant_alone(scenario, config);
+    run_closed_loop(config, closed_loop, out, commands);
+    replay(plant_alone, out, commands);
+    if (closed_loop.truth()->base.p_WB != plant_alone.truth()->base.p_WB) {
       throw std::runtime_error("march: the replayed commands led elsewhere");
     }
   }

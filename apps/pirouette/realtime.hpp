@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "pirouette/runtime/control_loop.hpp"
+
 namespace pirouette::app {
 
 /// Asks for what a loop in real time wants: the calling thread under SCHED_FIFO, the process's
@@ -12,13 +14,13 @@ namespace pirouette::app {
 std::vector<std::string> request_real_time();
 
 /// Tick n is due n periods after the first one, whatever happened before. One thread.
-class RealTimePacer {
+class RealTimePacer final : public Pacer {
  public:
   explicit RealTimePacer(double period) : period_(period) {}  ///< s
 
   /// Returns when tick `tick` is due; at once when that time has passed, which is a missed
   /// deadline.
-  void wait(std::int64_t tick);
+  void wait(std::int64_t tick) override;
 
   std::int64_t ticks() const { return ticks_; }
   std::int64_t missed() const { return missed_; }

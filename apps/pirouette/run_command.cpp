@@ -56,7 +56,7 @@ Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_p
   if (show_progress) bar.emplace(about_a_point);
   TrialOptions options;
   options.trace = &trace;
-  if (pacer != nullptr) options.before_tick = [pacer](std::int64_t tick) { pacer->wait(tick); };
+  options.pacer = pacer;
   options.progress = [&](const TrialProgress& progress) {
     if (bar) bar->update(progress);
     return interrupt_signal() == 0;

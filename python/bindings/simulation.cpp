@@ -25,17 +25,17 @@ Result<Simulation> Simulation::create(const Config& config) {
   // The plant has read the same text.
   const Terrain terrain(parse_terrain(config.plant.terrain).value(),
                         static_cast<std::uint64_t>(config.run.seed));
-  return Simulation(config, mjcf.value(), terrain, std::move(plant).value(),
-                    std::move(controller).value());
+  return Simulation(
+      config, mjcf.value(), terrain,
+      std::make_unique<Robot>(std::move(plant).value(), std::move(controller).value()));
 }
 
-Simulation::Simulation(Config config, std::string mjcf, Terrain terrain, Plant plant,
-                       SpinController controller)
+Simulation::Simulation(Config config, std::string mjcf, Terrain terrain,
+                       std::unique_ptr<Robot> robot)
     : config_(std::move(config)),
       mjcf_(std::move(mjcf)),
       terrain_(std::move(terrain)),
-      plant_(std::move(plant)),
-      controller_(std::move(controller)),
+      robot_(std::move(robot)),
       standing_ticks_(std::llround(config_.gait.stand_time * config_.control.rate)) {
   command.walk = true;
   command.v_H = Vec2(config_.run.velocity[0], config_.run.velocity[1]);
@@ -46,30 +46,29 @@ Simulation::Simulation(Config config, std::string mjcf, Terrain terrain, Plant p
 Errors Simulation::reset() {
   Result<Plant> plant = create_plant(config_, mjcf_);
   if (!plant) return plant.errors();
-  plant_ = std::move(plant).value();
+  robot_ = std::make_unique<Robot>(std::move(plant).value(), std::move(robot_->controller));
   begin();
   return {};
 }
 
 void Simulation::begin() {
-  const BaseTruth& start = plant_.truth().base;
-  controller_.reset({start.p_WB, start.R_WB});
+  const BaseTruth& start = robot_->plant.truth().base;
+  robot_->controller.reset({start.p_WB, start.R_WB});
   yaw_.reset(rpy_from_rotation(start.R_WB).yaw);
-  ticks_ = 0;
   tick();
 }
 
 void Simulation::step(std::int64_t ticks) {
   for (; ticks > 0; --ticks) {
-    plant_.advance(controller_.trace().command);
-    ++ticks_;
+    robot_->loop.send();
     tick();
   }
 }
 
 void Simulation::tick() {
-  yaw_.update(rpy_from_rotation(plant_.truth().base.R_WB).yaw);
-  controller_.tick(plant_.sense(), ticks_ < standing_ticks_ ? MotionCommand{} : command);
+  yaw_.update(rpy_from_rotation(robot_->plant.truth().base.R_WB).yaw);
+  ControlLoop& loop = robot_->loop;
+  loop.tick(loop.ticks() < standing_ticks_ ? MotionCommand{} : command);
 }
 
 }  // namespace pirouette

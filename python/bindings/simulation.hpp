@@ -2,14 +2,18 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
+#include <utility>
 
 #include "pirouette/base/result.hpp"
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/config/config.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/plant/simulated_world.hpp"
 #include "pirouette/plant/terrain.hpp"
+#include "pirouette/runtime/control_loop.hpp"
 #include "pirouette/trial/trace_file.hpp"
 
 namespace pirouette {
@@ -25,19 +29,27 @@ class Simulation {
   void step(std::int64_t ticks);
 
   /// The present moment: the controller's tick and the truth that belong together.
-  TraceRow row() const { return {controller_.trace(), plant_.truth(), yaw_.value()}; }
-  double time() const { return plant_.truth().time; }
+  TraceRow row() const { return {controller().trace(), robot_->plant.truth(), yaw_.value()}; }
+  double time() const { return robot_->plant.truth().time; }
   const Config& config() const { return config_; }
-  const SpinController& controller() const { return controller_; }
-  Plant& plant() { return plant_; }
+  const SpinController& controller() const { return robot_->controller; }
+  Plant& plant() { return robot_->plant; }
   /// m, of the ground.
   double height(const Vec2& xy) const { return terrain_.height(xy); }
 
   MotionCommand command;  ///< in force from the next tick on
 
  private:
-  Simulation(Config config, std::string mjcf, Terrain terrain, Plant plant,
-             SpinController controller);
+  /// What the loop refers to stays where it is.
+  struct Robot {
+    Robot(Plant in, SpinController by) : plant(std::move(in)), controller(std::move(by)) {}
+    Plant plant;
+    SpinController controller;
+    SimulatedWorld world{plant};
+    ControlLoop loop{world, controller};
+  };
+
+  Simulation(Config config, std::string mjcf, Terrain terrain, std::unique_ptr<Robot> robot);
 
   void begin();
   void tick();
@@ -45,10 +57,8 @@ class Simulation {
   Config config_;
   std::string mjcf_;
   Terrain terrain_;
-  Plant plant_;
-  SpinController controller_;
+  std::unique_ptr<Robot> robot_;
   YawUnwrapper yaw_;
-  std::int64_t ticks_ = 0;
   std::int64_t standing_ticks_;
 };
 

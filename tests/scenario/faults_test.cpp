@@ -5,6 +5,7 @@
 
 #include "pirouette/controller/command_guard.hpp"
 #include "pirouette/plant/random.hpp"
+#include "pirouette/plant/simulated_world.hpp"
 #include "support/closed_loop.hpp"
 #include "support/trial.hpp"
 
@@ -126,17 +127,36 @@ TEST(DeadMotor, TheFallEndsInTheStandDown) {
   EXPECT_LT(loop.plant.truth().v_WG_W.norm(), 0.1);
 }
 
+/// Misses a fifth of its ticks, in which the last command stands.
+class LossyController final : public Controller {
+ public:
+  explicit LossyController(Controller& controller) : controller_(controller) {}
+
+  void reset(const BasePose& start) override { controller_.reset(start); }
+  const JointCommand& tick(const SensorReading& sensors,
+                           const MotionCommand& command) noexcept override {
+    if (lost_.uniform() > 0.2) last_ = controller_.tick(sensors, command);
+    return last_;
+  }
+  ControllerStatus status() const noexcept override { return controller_.status(); }
+
+ private:
+  Controller& controller_;
+  RandomStream lost_{1, RandomPurpose::kLostCommands};
+  JointCommand last_;
+};
+
 TEST(LostTicks, AFifthOfTheTicksMayBeMissed) {
   ClosedLoop loop(test::spin_config({}));
   loop.run(1.0, test::stand_still());
   const Vec2 point = loop.plant.truth().p_WG.head<2>();
-  RandomStream lost(1, RandomPurpose::kLostCommands);
-  JointCommand last;
+  SimulatedWorld world(loop.plant);
+  LossyController lossy(loop.controller);
+  ControlLoop lossy_loop(world, lossy);
   double farthest = 0.0;
   for (int i = 0; i < 10000; ++i) {
-    const SensorReading sensors = loop.plant.sense();
-    if (lost.uniform() > 0.2) last = loop.controller.tick(sensors, test::spin(0.7));
-    loop.plant.advance(last);
+    lossy_loop.tick(test::spin(0.7));
+    lossy_loop.send();
     farthest = std::max(farthest, (loop.plant.truth().p_WG.head<2>() - point).norm());
   }
   EXPECT_EQ(loop.controller.status(), ControllerStatus::kWalking);

@@ -28,14 +28,13 @@ struct Path {
 /// Three seconds of the closed loop with perfect sensors: standing, then spinning.
 Path spin_for_three_seconds(const std::string& mjcf, const Vec2& xy, double yaw) {
   const Config config = test::ideal_config();
-  Plant plant = test::create_plant(config, mjcf, xy, yaw).value();
-  SpinController controller = SpinController::create(config, mjcf).value();
-  controller.reset({plant.truth().base.p_WB, plant.truth().base.R_WB});
+  test::ClosedLoop loop(test::create_plant(config, mjcf, xy, yaw).value(),
+                        SpinController::create(config, mjcf).value());
   Path path;
   for (int i = 0; i < static_cast<int>(3.0 / test::kTick); ++i) {
-    plant.advance(controller.tick(plant.sense(), test::spin(kRate)));
-    path.p_WG.push_back(plant.truth().p_WG);
-    path.yaw.push_back(rpy_from_rotation(plant.truth().base.R_WB).yaw);
+    loop.tick(test::spin(kRate));
+    path.p_WG.push_back(loop.plant.truth().p_WG);
+    path.yaw.push_back(rpy_from_rotation(loop.plant.truth().base.R_WB).yaw);
   }
   return path;
 }

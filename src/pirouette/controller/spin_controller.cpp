@@ -423,7 +423,11 @@ void SpinController::reset(const BasePose& start) { impl_->reset(start); }
 void SpinController::follow(std::optional<Path> path) {
   impl_->path_reference.follow(std::move(path));
 }
-ControllerStatus SpinController::status() const { return impl_->trace.status; }
+ControllerStatus SpinController::status() const noexcept { return impl_->trace.status; }
+const RobotState* SpinController::estimate() const noexcept { return &impl_->trace.state; }
+std::optional<double> SpinController::path_progress() const noexcept {
+  return impl_->trace.path.arc_length;
+}
 const TickTrace& SpinController::trace() const { return impl_->trace; }
 const TickTiming& SpinController::timing() const { return impl_->timing; }
 

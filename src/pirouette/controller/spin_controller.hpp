@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pirouette/base/result.hpp"
+#include "pirouette/controller/controller.hpp"
 #include "pirouette/controller/controller_config.hpp"
 #include "pirouette/path/path.hpp"
 #include "pirouette/types/joint_command.hpp"
@@ -15,23 +16,17 @@
 
 namespace pirouette {
 
-/// Wall-clock cost of the last tick; kept out of TickTrace, which must be reproducible.
-struct TickTiming {
-  double mpc_us = 0.0;  ///< 0 in ticks that did not solve the MPC
-  double wbc_us = 0.0;
-};
-
-class SpinController {
+class SpinController final : public Controller {
  public:
   /// Loads the robot's own model from `mjcf`.
   static Result<SpinController> create(const ControllerConfig& config, const std::string& mjcf);
 
   SpinController(SpinController&&) noexcept;
   SpinController& operator=(SpinController&&) noexcept;
-  ~SpinController();
+  ~SpinController() override;
 
   /// Forgets everything but the path and starts the estimator from `start`.
-  void reset(const BasePose& start);
+  void reset(const BasePose& start) override;
 
   /// From now on commands are followed along `path`, given in a frame of its own: where walking
   /// begins (MotionCommand::point and heading, else where the robot stands) the path begins.
@@ -40,9 +35,12 @@ class SpinController {
 
   /// One control period. No exception, no allocation, no I/O. After a failure that latches
   /// (is_stood_down) every further command is the damped stand-down until reset().
-  const JointCommand& tick(const SensorReading& sensors, const MotionCommand& command) noexcept;
+  const JointCommand& tick(const SensorReading& sensors,
+                           const MotionCommand& command) noexcept override;
 
-  ControllerStatus status() const;
+  ControllerStatus status() const noexcept override;
+  const RobotState* estimate() const noexcept override;
+  std::optional<double> path_progress() const noexcept override;
   const TickTrace& trace() const;
   const TickTiming& timing() const;
 

@@ -350,6 +350,8 @@ void Plant::push(const Vec3& delta_v_W) {
 
 void Plant::set_friction(double friction) { impl_->friction = friction; }
 
+double Plant::period() const { return impl_->period(); }
+
 double Plant::physics_step_us_median() const { return impl_->step_times.median(); }
 
 }  // namespace pirouette

@@ -53,6 +53,7 @@ class Plant {
   /// Sliding friction of feet and ground from now on, where the terrain has none of its own.
   void set_friction(double friction);
 
+  double period() const;                  ///< s, of one advance()
   double physics_step_us_median() const;  ///< wall-clock cost of one physics step
 
  private:

@@ -9,8 +9,8 @@
 #include <system_error>
 #include <utility>
 
+#include "pirouette/base/npy.hpp"
 #include "pirouette/plant/terrain.hpp"
-#include "pirouette/trial/npy.hpp"
 
 namespace pirouette {
 namespace {

@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "pirouette/controller/spin_controller.hpp"
+#include "pirouette/plant/simulated_world.hpp"
 
 namespace pirouette {
 namespace {
@@ -72,13 +73,13 @@ bool has_fallen(const PlantTruth& truth, double standing_height) {
            truth.v_WG_W.allFinite());
 }
 
-/// Plant and controller of a trial.
-struct Loop {
+/// The robot in its world, and its controller.
+struct Robot {
   Plant plant;
   SpinController controller;
 };
 
-Result<Loop> build(const TrialSetup& setup) {
+Result<Robot> build(const TrialSetup& setup) {
   const double recorded = recorded_time(setup);
   if (!(recorded <= kMaxDuration)) {
     std::ostringstream text;
@@ -87,7 +88,7 @@ Result<Loop> build(const TrialSetup& setup) {
   }
   Result<SpinController> controller = SpinController::create(setup.controller, setup.plant.mjcf);
   Result<Plant> plant = Plant::create(setup.world, setup.plant);
-  if (controller && plant) return Loop{std::move(plant).value(), std::move(controller).value()};
+  if (controller && plant) return Robot{std::move(plant).value(), std::move(controller).value()};
   // Both read the robot's file: what is wrong with it is said once.
   Errors errors = controller ? Errors{} : controller.errors();
   const Errors more = plant ? Errors{} : plant.errors();
@@ -97,14 +98,15 @@ Result<Loop> build(const TrialSetup& setup) {
   return errors;
 }
 
-class Trial {
+/// Commands the motion, judges falls by the truth, and measures.
+class Trial final : public MotionSource, public Observer {
  public:
-  Trial(const TrialSetup& setup, const TrialOptions& options, Loop loop)
+  Trial(const TrialSetup& setup, const TrialOptions& options, Robot robot)
       : setup_(setup),
         options_(options),
         schedule_(setup),
-        plant_(std::move(loop.plant)),
-        controller_(std::move(loop.controller)) {
+        plant_(std::move(robot.plant)),
+        controller_(std::move(robot.controller)) {
     const BaseTruth& start = plant_.truth().base;
     controller_.reset({start.p_WB, start.R_WB});
     controller_.follow(setup_.path);
@@ -116,31 +118,56 @@ class Trial {
 
   TrialResult run() {
     start_ = Clock::now();
-    for (tick_ = 0; tick_ <= schedule_.end; ++tick_) {
-      if (options_.before_tick) options_.before_tick(tick_);
-      const PlantTruth& truth = plant_.truth();
-      if (has_fallen(truth, setup_.plant.com_height) || gave_up()) {
-        fall_time_ = schedule_.seconds(tick_);
-        stand_down_delay_ = await_stand_down();
-        break;
-      }
-      yaw_.update(rpy_from_rotation(truth.base.R_WB).yaw);
-      if (tick_ == schedule_.command) begin_motion(truth);
-      const JointCommand& command = tick(present_command());
-      log(truth);
-      if (!report(truth)) return {.metrics = {}, .interrupted = true};
-      if (tick_ < schedule_.end) plant_.advance(command);
-    }
-    if (!fall_time_ && is_stood_down(controller_.status())) {
-      fall_time_ = schedule_.seconds(schedule_.end);
-      stand_down_delay_ = 0.0;
-    }
+    SimulatedWorld world(plant_);
+    Observer* const self = this;
+    const LoopEnd end = pirouette::run(world, controller_, *this, {&self, 1}, options_.pacer);
+    if (end == LoopEnd::kObserver) return {.metrics = {}, .interrupted = true};
     return {.metrics = summarise(), .interrupted = false};
   }
 
+  std::optional<MotionCommand> next(std::int64_t tick, const PlantTruth* truth) override {
+    if (fall_tick_) return while_falling(tick);
+    if (tick > schedule_.end) {
+      if (is_stood_down(controller_.status())) {
+        fall_tick_ = schedule_.end;
+        stand_down_delay_ = 0.0;
+      }
+      return std::nullopt;
+    }
+    tick_ = tick;
+    if (has_fallen(*truth, setup_.plant.com_height) || gave_up()) {
+      fall_tick_ = tick;
+      return while_falling(tick);
+    }
+    yaw_.update(rpy_from_rotation(truth->base.R_WB).yaw);
+    if (tick == schedule_.command) begin_motion(*truth);
+    return command_of(tick);
+  }
+
+  bool watch(const TickView& view) override {
+    if (fall_tick_) return true;
+    tick_us_.push_back(view.tick_us);
+    const TickTiming& timing = controller_.timing();
+    if (timing.mpc_us > 0.0) mpc_us_.push_back(timing.mpc_us);
+    if (timing.wbc_us > 0.0) wbc_us_.push_back(timing.wbc_us);
+    log(*view.truth);
+    return report(*view.truth);
+  }
+
  private:
-  MotionCommand present_command() const {
-    return tick_ < schedule_.command ? MotionCommand{} : setup_.motion;
+  MotionCommand command_of(std::int64_t tick) const {
+    return tick < schedule_.command ? MotionCommand{} : setup_.motion;
+  }
+
+  /// The command goes on until the controller has stood down, for kStandDownTime at most.
+  std::optional<MotionCommand> while_falling(std::int64_t tick) {
+    const std::int64_t waited = tick - *fall_tick_;
+    if (is_stood_down(controller_.status())) {
+      stand_down_delay_ = schedule_.seconds(waited);
+      return std::nullopt;
+    }
+    if (waited > schedule_.ticks(kStandDownTime)) return std::nullopt;
+    return command_of(*fall_tick_);
   }
 
   void begin_motion(const PlantTruth& truth) {
@@ -151,29 +178,9 @@ class Trial {
         commanded_path(setup_, commanded_.point, command.heading.value_or(command_yaw_));
   }
 
-  const JointCommand& tick(const MotionCommand& motion) {
-    const SensorReading reading = plant_.sense();
-    const Clock::time_point before = Clock::now();
-    const JointCommand& command = controller_.tick(reading, motion);
-    tick_us_.push_back(seconds_since(before) * 1e6);
-    const TickTiming& timing = controller_.timing();
-    if (timing.mpc_us > 0.0) mpc_us_.push_back(timing.mpc_us);
-    if (timing.wbc_us > 0.0) wbc_us_.push_back(timing.wbc_us);
-    return command;
-  }
-
   bool gave_up() {
     stood_down_ticks_ = is_stood_down(controller_.status()) ? stood_down_ticks_ + 1 : 0;
     return stood_down_ticks_ > schedule_.ticks(kStandDownTime);
-  }
-
-  Number await_stand_down() {
-    for (std::int64_t waited = 0; waited <= schedule_.ticks(kStandDownTime); ++waited) {
-      if (is_stood_down(controller_.status())) return schedule_.seconds(waited);
-      plant_.advance(controller_.tick(plant_.sense(), present_command()));
-      if (options_.before_tick) options_.before_tick(tick_ + waited + 1);
-    }
-    return std::nullopt;
   }
 
   void log(const PlantTruth& truth) {
@@ -206,10 +213,10 @@ class Trial {
 
   Metrics summarise() const {
     const double wall = seconds_since(start_);
-    const double simulated = schedule_.seconds(std::min(tick_, schedule_.end));
+    const double simulated = schedule_.seconds(tick_);
     Metrics m = evaluate(record_, commanded_, schedule_.rate);
-    m.fell = fall_time_.has_value();
-    m.fall_time_s = fall_time_;
+    m.fell = fall_tick_.has_value();
+    if (fall_tick_) m.fall_time_s = schedule_.seconds(*fall_tick_);
     m.stand_down_delay_s = stand_down_delay_;
     m.timing = summarise_times(tick_us_, mpc_us_, wbc_us_);
     m.timing.physics_step_us_median = plant_.physics_step_us_median();
@@ -231,24 +238,25 @@ class Trial {
   double command_yaw_ = 0.0;
   MotionRecord record_;
   std::vector<double> tick_us_, mpc_us_, wbc_us_;
-  std::int64_t tick_ = 0;
+  std::int64_t tick_ = 0;  ///< the last one before a fall
   std::int64_t rows_ = 0;
   std::int64_t stood_down_ticks_ = 0;
-  Number fall_time_, stand_down_delay_;
+  std::optional<std::int64_t> fall_tick_;
+  Number stand_down_delay_;  ///< s
   Clock::time_point start_;
 };
 
 }  // namespace
 
 Errors check_trial(const TrialSetup& setup) {
-  const Result<Loop> loop = build(setup);
-  return loop ? Errors{} : loop.errors();
+  const Result<Robot> robot = build(setup);
+  return robot ? Errors{} : robot.errors();
 }
 
 Result<TrialResult> run_trial(const TrialSetup& setup, const TrialOptions& options) {
-  Result<Loop> loop = build(setup);
-  if (!loop) return loop.errors();
-  return Trial(setup, options, std::move(loop).value()).run();
+  Result<Robot> robot = build(setup);
+  if (!robot) return robot.errors();
+  return Trial(setup, options, std::move(robot).value()).run();
 }
 
 }  // namespace pirouette

@@ -10,6 +10,7 @@
 #include "pirouette/metrics/metrics.hpp"
 #include "pirouette/path/path.hpp"
 #include "pirouette/plant/plant.hpp"
+#include "pirouette/runtime/control_loop.hpp"
 #include "pirouette/trial/trace_file.hpp"
 #include "pirouette/trial/trial_config.hpp"
 #include "pirouette/types/motion_command.hpp"
@@ -39,8 +40,7 @@ struct TrialProgress {
 };
 
 struct TrialOptions {
-  /// Called with the number of each control tick before it; may wait. May be empty.
-  std::function<void(std::int64_t)> before_tick;
+  Pacer* pacer = nullptr;  ///< nullptr: as fast as it can
   /// Called about every 0.1 s of simulated time; false ends the trial. May be empty.
   std::function<bool(const TrialProgress&)> progress;
   /// Takes run.trace_rate rows a second; nullptr: no trace. The caller finishes it.

@@ -1,4 +1,4 @@
-#include "pirouette/trial/npy.hpp"
+#include "pirouette/base/npy.hpp"
 
 namespace pirouette {
 
