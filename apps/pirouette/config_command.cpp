@@ -6,6 +6,7 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/metrics/metrics.hpp"
+#include "pirouette/runtime/recording.hpp"
 #include "pirouette/study/configured_trial.hpp"
 #include "pirouette/trial/trace_file.hpp"
 
@@ -22,6 +23,8 @@ ConfigCommand::ConfigCommand(CLI::App& app) {
   dump_options_.add_common(*dump_);
   doc_ = command_->add_subcommand("doc", "Print the table of all parameters (Markdown)");
   trace_ = command_->add_subcommand("trace", "Print the table of trace.npy's columns (Markdown)");
+  recording_ = command_->add_subcommand("recording",
+                                        "Print the table of recording.npy's columns (Markdown)");
   metrics_ =
       command_->add_subcommand("metrics", "Print the table of metrics.json's keys (Markdown)");
 }
@@ -56,6 +59,8 @@ int ConfigCommand::run() const {
     std::cout << config_markdown();
   } else if (trace_->parsed()) {
     std::cout << trace_markdown();
+  } else if (recording_->parsed()) {
+    std::cout << npy_rows_markdown(RecordedTick{});
   } else if (metrics_->parsed()) {
     std::cout << metrics_markdown();
   } else {

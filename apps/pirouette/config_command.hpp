@@ -25,6 +25,7 @@ class ConfigCommand {
   CLI::App* dump_;
   CLI::App* doc_;
   CLI::App* trace_;
+  CLI::App* recording_;
   CLI::App* metrics_;
   std::vector<std::string> files_;
   ConfigOptions dump_options_;

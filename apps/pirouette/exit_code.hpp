@@ -7,7 +7,7 @@ namespace pirouette::app {
 
 enum ExitCode : int {
   kDone = 0,
-  kFell = 1,      ///< or a bound was missed
+  kFell = 1,      ///< or a bound was missed, or a replay differs
   kBadUsage = 2,  ///< command line, configuration, files
   kSignal = 128,  ///< plus the signal's number: 130 after Ctrl-C
 };

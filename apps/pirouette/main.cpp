@@ -17,6 +17,7 @@
 #include "pirouette/base/version.hpp"
 #include "pirouette/config/validate.hpp"
 #include "pirouette/study/repeat_command.hpp"
+#include "replay_command.hpp"
 #include "reproduce_command.hpp"
 #include "run_command.hpp"
 #include "sweep_command.hpp"
@@ -100,7 +101,9 @@ int run(int argc, char** argv) {
   CLI::App app{"Accurate blind spinning of quadrupeds, simulated on MuJoCo.", "pirouette"};
   app.footer(
       "pirouette VERB --help explains a verb. Other verbs run the program pirouette-VERB.\n"
-      "Exit codes: 0 done, 1 the robot fell or a bound was missed, 2 bad usage or configuration.");
+      "Exit codes: 0 done, 1 the robot fell, a bound was missed or a replay differs, 2 bad usage "
+      "or "
+      "configuration.");
   app.set_version_flag("--version", std::string("pirouette ") + version() + " (" + commit() + ")");
   app.require_subcommand(0, 1);
   const std::string command_line = shell_line(argc, argv);
@@ -109,6 +112,7 @@ int run(int argc, char** argv) {
   const SweepCommand sweep(app, SweepCommand::Kind::kSweep);
   const SweepCommand montecarlo(app, SweepCommand::Kind::kMontecarlo);
   const ReproduceCommand reproduce(app);
+  const ReplayCommand replay(app);
   const ConfigCommand config(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_verb(app, argv[1])) {
@@ -127,6 +131,7 @@ int run(int argc, char** argv) {
   if (sweep.chosen()) return sweep.run();
   if (montecarlo.chosen()) return montecarlo.run();
   if (reproduce.chosen()) return reproduce.run();
+  if (replay.chosen()) return replay.run();
   if (config.chosen()) return config.run();
   std::cout << app.help();
   return kDone;

@@ -8,6 +8,7 @@
 #include "exit_code.hpp"
 #include "interrupt.hpp"
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/runtime/recording.hpp"
 #include "pirouette/study/configured_trial.hpp"
 #include "pirouette/trial/run_folder.hpp"
 #include "progress_bar.hpp"
@@ -30,7 +31,7 @@ std::string run_toml(const Config& config, const RunContext& context,
          context.mujoco + "\n# " + command_line + "\n\n" + dump_toml(config);
 }
 
-std::optional<Error> save(RunFolder& folder, TraceFile& trace, const Config& config,
+std::optional<Error> save(RunFolder& folder, NpyRowsFile& trace, const Config& config,
                           const Metrics& metrics, const std::string& command_line) {
   if (auto error = trace.finish()) return error;
   if (auto error = folder.write(kRunFile, run_toml(config, metrics.context, command_line))) {
@@ -49,14 +50,10 @@ std::string shown_path(const std::filesystem::path& path) {
   return relative.starts_with("..") ? path.string() : relative;
 }
 
-Result<TrialResult> simulate(const Config& config, TraceFile& trace, bool show_progress,
-                             RealTimePacer* pacer) {
+Result<TrialResult> simulate(const Config& config, TrialOptions options, bool show_progress) {
   const bool about_a_point = config.run.path.empty() && config.run.velocity == std::array{0.0, 0.0};
   std::optional<ProgressBar> bar;
   if (show_progress) bar.emplace(about_a_point);
-  TrialOptions options;
-  options.trace = &trace;
-  options.pacer = pacer;
   options.progress = [&](const TrialProgress& progress) {
     if (bar) bar->update(progress);
     return interrupt_signal() == 0;
@@ -78,6 +75,9 @@ RunCommand::RunCommand(CLI::App& app, Kind kind, std::string command_line)
   command_->add_option("--out", out_, "Run folder; an earlier run there is replaced [runs/...]")
       ->type_name("DIR");
   command_->add_flag("--json", json_, "Print metrics.json instead of the table");
+  command_->add_flag("--record", record_,
+                     "Record every tick's readings and commands; without it only the last 10 s "
+                     "before a fall");
   command_->add_flag("--realtime", realtime_,
                      "Run against the wall clock, under SCHED_FIFO with locked memory where that "
                      "is permitted, and tell how many deadlines were missed");
@@ -111,15 +111,19 @@ int RunCommand::run() const {
     for (Error& error : errors) error = {"--out", 0, "", error.to_string()};
     return report(errors);
   }
-  Result<TraceFile> trace = TraceFile::create(folder.value().file(kTraceFile));
+  Result<NpyRowsFile> trace = create_trace_file(folder.value().file(kTraceFile));
   if (!trace) return report(trace.errors());
 
   watch_interrupts();
   RealTimePacer pacer(1.0 / config.control.rate);
   const std::vector<std::string> refused =
       realtime_ ? request_real_time() : std::vector<std::string>{};
-  const Result<TrialResult> trial =
-      simulate(config, trace.value(), !quiet_, realtime_ ? &pacer : nullptr);
+  TrialOptions options;
+  options.trace = &trace.value();
+  options.pacer = realtime_ ? &pacer : nullptr;
+  options.recording_folder = folder.value().file("");
+  options.records_whole_run = record_;
+  const Result<TrialResult> trial = simulate(config, options, !quiet_);
   if (!trial) return report(config_options_.in_typed_words(trial.errors()));
   if (trial.value().interrupted) {
     std::cerr << "interrupted: no run folder was written\n";
@@ -135,7 +139,11 @@ int RunCommand::run() const {
   } else if (!quiet_) {
     std::cout << summary(metrics) << "\nRun folder: " << shown_path(folder.value().path()) << "\n";
   }
-  return metrics.fell ? kFell : kDone;
+  if (!metrics.fell) return kDone;
+  std::cerr << "the robot fell: what went in and out before is in "
+            << shown_path(folder.value().path() / kRecordingFile) << "; pirouette replay "
+            << shown_path(folder.value().path()) << "\n";
+  return kFell;
 }
 
 }  // namespace pirouette::app

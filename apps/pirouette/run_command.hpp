@@ -30,6 +30,7 @@ class RunCommand {
   bool json_ = false;
   bool quiet_ = false;
   bool realtime_ = false;
+  bool record_ = false;
 };
 
 }  // namespace pirouette::app

@@ -58,7 +58,7 @@ Config load(const std::optional<std::string>& robot, const std::optional<std::st
 /// Runs a trial with the interpreter unlocked; its trace goes to the file `trace`. The text of
 /// metrics.json. Ctrl-C ends it.
 std::string run(const Config& config, const std::string& trace) {
-  TraceFile file = value_or_raise(TraceFile::create(trace));
+  NpyRowsFile file = value_or_raise(create_trace_file(trace));
   TrialOptions options;
   options.trace = &file;
   options.progress = [](const TrialProgress&) {

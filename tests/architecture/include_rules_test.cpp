@@ -56,7 +56,8 @@ const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/report", {"base/*", "config/*", "metrics/*", "plant/*", "trial/*", "study/*"}},
 
     {"apps/pirouette",
-     {"base/*", "config/*", "runtime/*", "metrics/*", "trial/*", "study/*", "report/*"}},
+     {"base/*", "config/*", "controller/spin_controller.hpp", "runtime/*", "metrics/*", "trial/*",
+      "study/*", "report/*"}},
     {"python/bindings",
      {"base/*", "types/*", "config/*", "controller/spin_controller.hpp", "path/path.hpp",
       "plant/plant.hpp", "plant/simulated_world.hpp", "plant/terrain.hpp", "runtime/*", "metrics/*",

@@ -18,7 +18,7 @@ std::filesystem::path trace_path(const std::string& name) {
 /// Bytes of the trace of a short spin.
 std::string trace_of(const std::string& name, const std::string& seed) {
   const std::filesystem::path path = trace_path(name);
-  Result<TraceFile> file = TraceFile::create(path);
+  Result<NpyRowsFile> file = create_trace_file(path);
   if (!file.ok()) return "";
   TrialOptions options;
   options.trace = &file.value();

@@ -1,4 +1,5 @@
-# Runs every command of trace_hashes.txt and compares the SHA-256 of its trace.npy with the one written there.
+# Runs every command of trace_hashes.txt, compares the SHA-256 of its trace.npy with the one written there, and replays
+# the run.
 # Another compiler, C library or kind of processor rounds otherwise: there the test says so and is skipped.
 #   PROGRAM: the program; HASH_FILE; WORK_DIR; COMPILER: name and version; UPDATE=ON writes the file instead.
 cmake_host_system_information(RESULT _platform QUERY OS_PLATFORM)
@@ -32,7 +33,7 @@ foreach(line IN LISTS _lines)
   set(_command "${CMAKE_MATCH_2}")
   separate_arguments(_arguments UNIX_COMMAND "${_command}")
   execute_process(
-    COMMAND ${PROGRAM} ${_arguments} --quiet --out ${WORK_DIR}/run
+    COMMAND ${PROGRAM} ${_arguments} --record --quiet --out ${WORK_DIR}/run
     ERROR_VARIABLE _error
     RESULT_VARIABLE _code
   )
@@ -40,6 +41,15 @@ foreach(line IN LISTS _lines)
     message(FATAL_ERROR "pirouette ${_command}: no trace, exit code ${_code}\n${_error}")
   endif()
   file(SHA256 ${WORK_DIR}/run/trace.npy _hash)
+  execute_process(
+    COMMAND ${PROGRAM} replay ${WORK_DIR}/run
+    OUTPUT_VARIABLE _replay
+    ERROR_VARIABLE _replay
+    RESULT_VARIABLE _code
+  )
+  if(NOT _code EQUAL 0)
+    message(FATAL_ERROR "pirouette ${_command}: the replay differs, exit code ${_code}\n${_replay}")
+  endif()
   file(REMOVE_RECURSE ${WORK_DIR}/run)
   string(APPEND _updated "${_hash} ${_command}\n")
   if(NOT _hash STREQUAL _expected)

@@ -87,7 +87,7 @@ class TraceFileTest : public testing::Test {
   void TearDown() override { fs::remove(path_); }
 
   NpyFile write_rows(int count) {
-    Result<TraceFile> file = TraceFile::create(path_);
+    Result<NpyRowsFile> file = create_trace_file(path_);
     EXPECT_TRUE(file.ok());
     for (int i = 0; i < count; ++i) {
       TickTrace tick;
@@ -99,7 +99,7 @@ class TraceFileTest : public testing::Test {
       truth.p_WG = Vec3(1.0, 2.0, 3.0 + i);
       truth.f_W[Leg::kRR].z() = 22.0;
       truth.contact[Leg::kRR] = true;
-      file.value().append({tick, truth, 7.5});
+      file.value().append(TraceRow{tick, truth, 7.5});
     }
     EXPECT_FALSE(file.value().finish());
     return read_npy(path_);
@@ -160,14 +160,14 @@ TEST_F(TraceFileTest, NamesEveryColumnOnceAndDocumentsIt) {
 }
 
 TEST(TraceFile, ThatCannotBeCreatedIsAnError) {
-  const Result<TraceFile> file = TraceFile::create("/no/such/folder/trace.npy");
+  const Result<NpyRowsFile> file = create_trace_file("/no/such/folder/trace.npy");
   ASSERT_FALSE(file.ok());
   EXPECT_EQ(file.errors().front().file, "/no/such/folder/trace.npy");
 }
 
 TEST(TraceFile, OnAFullDiskIsAnError) {
   if (!fs::exists("/dev/full")) GTEST_SKIP() << "no /dev/full here";
-  EXPECT_FALSE(TraceFile::create("/dev/full").ok());
+  EXPECT_FALSE(create_trace_file("/dev/full").ok());
 }
 
 }  // namespace

@@ -1,7 +1,10 @@
 // What a loop asks of a controller, whoever wrote it.
 #pragma once
 
+#include <cstddef>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
@@ -35,6 +38,16 @@ class Controller {
 
   /// m, along the path that it follows, from the path's start; absent without one.
   virtual std::optional<double> path_progress() const noexcept { return std::nullopt; }
+
+  /// All that the controller remembers, for restore(); empty for one that cannot tell.
+  virtual std::vector<std::byte> snapshot() const { return {}; }
+
+  /// Puts the controller where the one was that gave `snapshot`, which has the same configuration
+  /// and version. False: it does not fit; the controller is then as it was.
+  virtual bool restore(std::span<const std::byte> snapshot) {
+    static_cast<void>(snapshot);
+    return false;
+  }
 
  protected:
   Controller() = default;

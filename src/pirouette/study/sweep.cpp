@@ -143,9 +143,9 @@ class Pool {
     options.progress = [this](const TrialProgress&) { return !stopped(); };
     const fs::path path = trace_path(options_.folder, job.key);
     const fs::path part = path.string() + part_suffix(options_.shard);
-    std::optional<TraceFile> trace;
+    std::optional<NpyRowsFile> trace;
     if (job.keep_trace) {
-      Result<TraceFile> created = TraceFile::create(part);
+      Result<NpyRowsFile> created = create_trace_file(part);
       if (!created) return created.errors();
       options.trace = &trace.emplace(std::move(created).value());
     }

@@ -1,14 +1,12 @@
 // trace.npy: a NumPy structured array, one row per logged tick; `numpy.load` reads it.
 #pragma once
 
-#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <optional>
 #include <string>
-#include <vector>
 
+#include "pirouette/base/npy_rows_file.hpp"
 #include "pirouette/base/result.hpp"
+#include "pirouette/base/rotation.hpp"
 #include "pirouette/types/plant_truth.hpp"
 #include "pirouette/types/tick_trace.hpp"
 
@@ -26,23 +24,8 @@ struct TraceRow {
   static void columns(const TraceRow& row, Visit&& visit);
 };
 
-/// Writes rows as they come. The number of rows in the header is right after finish().
-class TraceFile {
- public:
-  static Result<TraceFile> create(const std::filesystem::path& path);
-
-  void append(const TraceRow& row);
-  /// Completes the header and closes the file; the error when anything could not be written.
-  std::optional<Error> finish();
-
- private:
-  explicit TraceFile(std::filesystem::path path);
-
-  std::filesystem::path path_;
-  std::ofstream stream_;
-  std::vector<char> row_;
-  std::uint64_t rows_ = 0;
-};
+/// A file to append TraceRows to.
+Result<NpyRowsFile> create_trace_file(const std::filesystem::path& path);
 
 /// Table of every column with its NumPy type, unit and meaning, in Markdown.
 std::string trace_markdown();

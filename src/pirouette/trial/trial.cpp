@@ -7,6 +7,7 @@
 
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/simulated_world.hpp"
+#include "pirouette/runtime/recording.hpp"
 
 namespace pirouette {
 namespace {
@@ -107,22 +108,42 @@ class Trial final : public MotionSource, public Observer {
         schedule_(setup),
         plant_(std::move(robot.plant)),
         controller_(std::move(robot.controller)) {
-    const BaseTruth& start = plant_.truth().base;
-    controller_.reset({start.p_WB, start.R_WB});
+    controller_.reset(start_pose());
     controller_.follow(setup_.path);
     const MotionCommand& command = setup_.motion;
     commanded_ = {command.point.value_or(Vec2::Zero()), command.v_H, command.yaw_rate,
                   command.hold_heading, std::nullopt};
-    yaw_.reset(rpy_from_rotation(start.R_WB).yaw);
+    yaw_.reset(rpy_from_rotation(start_pose().R_WB).yaw);
   }
 
-  TrialResult run() {
-    start_ = Clock::now();
+  Result<TrialResult> run() {
     SimulatedWorld world(plant_);
-    Observer* const self = this;
-    const LoopEnd end = pirouette::run(world, controller_, *this, {&self, 1}, options_.pacer);
-    if (end == LoopEnd::kObserver) return {.metrics = {}, .interrupted = true};
-    return {.metrics = summarise(), .interrupted = false};
+    std::vector<Observer*> observers = {this};
+    std::optional<FlightRecorder> last_seconds;
+    std::optional<RunRecorder> whole_run;
+    if (options_.records_whole_run) {
+      Result<RunRecorder> recorder =
+          RunRecorder::create(options_.recording_folder, controller_, start_pose());
+      if (!recorder) return recorder.errors();
+      observers.push_back(&whole_run.emplace(std::move(recorder).value()));
+    } else if (!options_.recording_folder.empty()) {
+      observers.push_back(&last_seconds.emplace(controller_, start_pose(), world.period()));
+    }
+
+    start_ = Clock::now();
+    const LoopEnd end = pirouette::run(world, controller_, *this, observers, options_.pacer);
+    TrialResult result;
+    result.interrupted = end == LoopEnd::kObserver;
+    if (!result.interrupted) result.metrics = summarise();
+    std::optional<Error> error;
+    if (whole_run) {
+      error = whole_run->finish();
+    } else if (last_seconds && fall_tick_) {
+      error = write_recording(options_.recording_folder, last_seconds->recording());
+    }
+    if (error) return *error;
+    result.recorded = whole_run || (last_seconds && fall_tick_);
+    return result;
   }
 
   std::optional<MotionCommand> next(std::int64_t tick, const PlantTruth* truth) override {
@@ -155,6 +176,12 @@ class Trial final : public MotionSource, public Observer {
   }
 
  private:
+  /// Where the robot is before the first tick.
+  BasePose start_pose() const {
+    const BaseTruth& start = plant_.truth().base;
+    return {start.p_WB, start.R_WB};
+  }
+
   MotionCommand command_of(std::int64_t tick) const {
     return tick < schedule_.command ? MotionCommand{} : setup_.motion;
   }
@@ -191,7 +218,7 @@ class Trial final : public MotionSource, public Observer {
     constexpr double kRounding = 1e-9;
     const double row_time = static_cast<double>(rows_) / setup_.trial.trace_rate;
     if (options_.trace != nullptr && schedule_.seconds(tick_) >= row_time - kRounding) {
-      options_.trace->append({trace, truth, yaw_.value()});
+      options_.trace->append(TraceRow{trace, truth, yaw_.value()});
       ++rows_;
     }
   }

@@ -1,7 +1,7 @@
 // One simulated run: plant and controller in a closed loop, watched by the truth.
 #pragma once
 
-#include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <optional>
 
@@ -44,12 +44,18 @@ struct TrialOptions {
   /// Called about every 0.1 s of simulated time; false ends the trial. May be empty.
   std::function<bool(const TrialProgress&)> progress;
   /// Takes run.trace_rate rows a second; nullptr: no trace. The caller finishes it.
-  TraceFile* trace = nullptr;
+  NpyRowsFile* trace = nullptr;
+  /// Folder for recording.npy and recording.start (runtime/recording.hpp); empty: none.
+  std::filesystem::path recording_folder;
+  /// False: only the last FlightRecorder::kKept seconds, and only when the robot falls or the
+  /// controller stands down.
+  bool records_whole_run = false;
 };
 
 struct TrialResult {
   Metrics metrics;
   bool interrupted = false;  ///< progress returned false
+  bool recorded = false;     ///< a recording was written
 };
 
 /// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, a
