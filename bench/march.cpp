@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "pirouette/base/rotation.hpp"
-#include "pirouette/config/validate.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/plant.hpp"
 #include "pirouette/runtime/control_loop.hpp"

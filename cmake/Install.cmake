@@ -4,7 +4,7 @@ include(CMakePackageConfigHelpers)
 set(_package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/pirouette)
 
 install(
-  TARGETS pirouette_controller pirouette_config pirouette_world pirouette_study
+  TARGETS pirouette_controller pirouette_runtime pirouette_config pirouette_world pirouette_study
   EXPORT pirouetteTargets
 )
 install(EXPORT pirouetteTargets NAMESPACE pirouette:: DESTINATION ${_package_dir})
@@ -12,12 +12,18 @@ install(EXPORT pirouetteTargets NAMESPACE pirouette:: DESTINATION ${_package_dir
 # what lies inside the source tree, as .venv does.
 set_target_properties(
   pirouette_program
+  pirouette_controller
+  pirouette_runtime
+  pirouette_config
+  pirouette_world
+  pirouette_study
   PROPERTIES
-    INSTALL_RPATH "$<TARGET_FILE_DIR:MuJoCo::MuJoCo>;$<TARGET_FILE_DIR:eiquadprog::eiquadprog>"
+    INSTALL_RPATH
+      "$ORIGIN;$ORIGIN/../${CMAKE_INSTALL_LIBDIR};$<TARGET_FILE_DIR:MuJoCo::MuJoCo>;$<TARGET_FILE_DIR:eiquadprog::eiquadprog>"
 )
 install(TARGETS pirouette_program)
 
-# Without those that show MuJoCo or toml++.
+# Without those that show MuJoCo or toml++, which are for this tree only.
 install(
   DIRECTORY src/pirouette
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}
@@ -30,7 +36,23 @@ install(
   PATTERN "plant/scene.hpp" EXCLUDE
   PATTERN "plant/spawn.hpp" EXCLUDE
 )
+install(
+  FILES ${PROJECT_BINARY_DIR}/include/pirouette/version.hpp
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/pirouette
+)
 install(DIRECTORY config experiments robots DESTINATION ${CMAKE_INSTALL_DATADIR}/pirouette)
+install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/pirouette)
+
+# pkg-config: pirouette-controller for a robot, pirouette for everything.
+foreach(package pirouette pirouette-controller)
+  configure_file(cmake/${package}.pc.in ${PROJECT_BINARY_DIR}/${package}.pc.in @ONLY)
+  file(
+    GENERATE OUTPUT
+    ${PROJECT_BINARY_DIR}/${package}.pc
+    INPUT ${PROJECT_BINARY_DIR}/${package}.pc.in
+  )
+  install(FILES ${PROJECT_BINARY_DIR}/${package}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
+endforeach()
 
 configure_package_config_file(
   cmake/pirouetteConfig.cmake.in

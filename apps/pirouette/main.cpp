@@ -15,7 +15,7 @@
 #include "config_command.hpp"
 #include "exit_code.hpp"
 #include "pirouette/base/version.hpp"
-#include "pirouette/config/validate.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/study/repeat_command.hpp"
 #include "replay_command.hpp"
 #include "reproduce_command.hpp"

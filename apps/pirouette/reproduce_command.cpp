@@ -9,8 +9,8 @@
 #include <iostream>
 
 #include "exit_code.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/suggest.hpp"
-#include "pirouette/config/validate.hpp"
 
 namespace pirouette::app {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
-#include "pirouette/config/validate.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "simulation.hpp"
 
 namespace pirouette::python {

@@ -11,8 +11,8 @@
 #include "bindings.hpp"
 #include "pirouette/base/version.hpp"
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/toml.hpp"
-#include "pirouette/config/validate.hpp"
 #include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::python {

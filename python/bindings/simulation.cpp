@@ -3,7 +3,7 @@
 #include <cmath>
 #include <utility>
 
-#include "pirouette/config/validate.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette {

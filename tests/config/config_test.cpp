@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/toml.hpp"
-#include "pirouette/config/validate.hpp"
 
 namespace pirouette {
 namespace {

@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "pirouette/base/rotation.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml_node.hpp"
-#include "pirouette/config/validate.hpp"
 
 namespace pirouette {
 namespace {

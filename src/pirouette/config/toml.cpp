@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml_node.hpp"
 #include "pirouette/config/validate.hpp"

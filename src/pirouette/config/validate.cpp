@@ -2,79 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <optional>
 #include <sstream>
 
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/path_file.hpp"
-#include "pirouette/config/suggest.hpp"
 
 namespace pirouette {
-namespace {
-
-namespace fs = std::filesystem;
-
-/// Sorted names of what `folder` holds, as `name_of` reads them from its entries.
-template <class NameOf>
-std::vector<std::string> names_in(const fs::path& folder, NameOf&& name_of) {
-  std::vector<std::string> names;
-  std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, none)) {
-    if (const std::optional<std::string> name = name_of(entry.path())) names.push_back(*name);
-  }
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-}  // namespace
-
-fs::path data_dir() {
-  const char* folder = std::getenv("PIROUETTE_DATA_DIR");
-  if (folder != nullptr && *folder != '\0') return folder;
-#ifdef PIROUETTE_SOURCE_DATA_DIR
-  if (fs::exists(fs::path(PIROUETTE_SOURCE_DATA_DIR) / "config")) return PIROUETTE_SOURCE_DATA_DIR;
-#endif
-#ifdef PIROUETTE_INSTALL_DATA_DIR
-  return PIROUETTE_INSTALL_DATA_DIR;
-#else
-  return ".";
-#endif
-}
-
-std::vector<std::string> known_robots() {
-  return names_in(data_dir() / "robots", [](const fs::path& folder) -> std::optional<std::string> {
-    const fs::path name = folder.filename();
-    if (!fs::exists(folder / (name.string() + ".xml"))) return std::nullopt;
-    return name.string();
-  });
-}
-
-std::vector<std::string> known_controllers() {
-  return toml_stems(data_dir() / "config" / "controllers");
-}
-
-std::vector<std::string> known_profiles() { return toml_stems(data_dir() / "config" / "plants"); }
-
-std::vector<std::string> toml_stems(const fs::path& folder) {
-  return names_in(folder, [](const fs::path& file) -> std::optional<std::string> {
-    if (file.extension() != ".toml") return std::nullopt;
-    return file.stem().string();
-  });
-}
-
-Result<std::string> resolve_robot(const Config& config) {
-  const fs::path path = config.robot;
-  if (path.extension() == ".xml") {
-    if (fs::is_regular_file(path)) return path.string();
-    return Error{"", 0, "robot", "given " + in_quotes(config.robot) + ": no such file"};
-  }
-  const std::vector<std::string> robots = known_robots();
-  if (std::binary_search(robots.begin(), robots.end(), config.robot)) {
-    return (data_dir() / "robots" / config.robot / (config.robot + ".xml")).string();
-  }
-  return Error{"", 0, "robot",
-               unknown_name(config.robot, robots) + "; or the path of an MJCF file ending in .xml"};
-}
 
 Errors validate(const Config& config) {
   Errors errors;
@@ -88,7 +21,7 @@ Errors validate(const Config& config) {
   if (const Result<std::string> robot = resolve_robot(config); !robot) errors = robot.errors();
 
   if (!config.run.path.empty()) {
-    const Result<fs::path> path = resolve_path(config.run);
+    const Result<std::filesystem::path> path = resolve_path(config.run);
     if (!path) errors.insert(errors.end(), path.errors().begin(), path.errors().end());
   }
 

@@ -5,8 +5,8 @@
 #include <filesystem>
 
 #include "pirouette/base/version.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/path_file.hpp"
-#include "pirouette/config/validate.hpp"
 #include "pirouette/trial/run_folder.hpp"
 
 namespace pirouette {

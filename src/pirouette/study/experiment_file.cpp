@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "pirouette/config/config_doc.hpp"
+#include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
-#include "pirouette/config/validate.hpp"
 #include "pirouette/study/experiment_reader.hpp"
 
 namespace pirouette {
