@@ -142,6 +142,19 @@ TEST(Architecture, IncludesPointOnlyTheAllowedWay) {
   }
 }
 
+// The trace holds two ticks' values in turn. A step that cannot see it reads only what its input
+// struct lists, where `last_` names the instant (docs/architecture.md, "One tick").
+TEST(Architecture, NoStepOfATickSeesTheTrace) {
+  const Patterns controller = kStages + Patterns{"controller/*"};
+  for (const Include& include : all_includes()) {
+    if (include.target != "pirouette/types/tick_trace.hpp") continue;
+    if (include.file == "src/pirouette/controller/spin_controller.hpp") continue;
+    EXPECT_FALSE(include.folder.starts_with("src/") &&
+                 matches_any(include.file.substr(std::string("src/pirouette/").size()), controller))
+        << include.file;
+  }
+}
+
 TEST(Architecture, OwnHeadersAreIncludedByTheirFullPath) {
   for (const Include& include : all_includes()) {
     if (!include.folder.starts_with("src/") || !include.target.ends_with(".hpp")) continue;

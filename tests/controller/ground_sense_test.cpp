@@ -25,9 +25,8 @@ class Spinning {
       : sense(config, kRadius), ground_(std::move(ground)) {
     place();
     std::array<Vec3, kLegCount> contacts;
-    for (const Leg leg : kLegs) contacts[index(leg)] = trace.contacts[leg].p_WC;
+    for (const Leg leg : kLegs) contacts[index(leg)] = feet[leg].p_WC;
     first_plane = sense.start(contacts);
-    trace.plane = first_plane;
   }
 
   /// Feet down where the trunk has turned to; `measured`: their contact flags.
@@ -35,30 +34,34 @@ class Spinning {
     yaw_ += 0.35;
     place();
     for (const Leg leg : kLegs) {
-      trace.contacts[leg].in_contact = true;
-      trace.contacts[leg].measured = measured;
-      LegPhase& phase = trace.gait.leg[leg];
+      feet[leg].in_contact = true;
+      feet[leg].measured = measured;
+      LegPhase& phase = gait.leg[leg];
       ++phase.stride;
       phase.stance = true;
       phase.progress = 0.5;
     }
-    sense.update(kTick, trace);
+    update();
   }
+  void update() { out = sense.update({feet, gait, state}, kTick); }
   void steps(int count) {
     for (int i = 0; i < count; ++i) step();
   }
 
-  TickTrace trace;
+  FootContacts feet;
+  GaitPhase gait;
+  RobotState state;
   GroundSense sense;
   TerrainPlane first_plane;
+  GroundSenseOutput out;
 
  private:
   void place() {
     for (const Leg leg : kLegs) {
       const Vec2 hip(fore_sign(leg) * 0.19, side_sign(leg) * 0.11);
       const Vec2 xy = rot2(yaw_) * hip;
-      trace.contacts[leg].p_WC << xy, ground_(xy);
-      trace.state.p_WF[leg] = trace.contacts[leg].p_WC + kRadius * Vec3::UnitZ();
+      feet[leg].p_WC << xy, ground_(xy);
+      state.p_WF[leg] = feet[leg].p_WC + kRadius * Vec3::UnitZ();
     }
   }
 
@@ -78,47 +81,47 @@ TEST(GroundSense, AFlatWorldStaysFlatAtTheHeightOfTheFeet) {
   config.estimation = TerrainEstimation::kOff;
   Spinning robot(config, [](const Vec2& p) { return 0.1 + slope(p); });
   robot.steps(10);
-  EXPECT_EQ(robot.trace.plane.a1, 0.0);
-  EXPECT_EQ(robot.trace.plane.a2, 0.0);
-  EXPECT_NEAR(robot.trace.plane.a0, 0.1, 1e-15);
-  EXPECT_FALSE(robot.trace.ground.stepped);
+  EXPECT_EQ(robot.out.plane.a1, 0.0);
+  EXPECT_EQ(robot.out.plane.a2, 0.0);
+  EXPECT_NEAR(robot.out.plane.a0, 0.1, 1e-15);
+  EXPECT_FALSE(robot.out.ground.stepped);
 }
 
 TEST(GroundSense, TellsSlopesFromStairs) {
   Spinning on_slope(TerrainConfig{}, slope), on_stairs(TerrainConfig{}, stairs);
   on_slope.steps(40);
   on_stairs.steps(40);
-  EXPECT_TRUE(on_slope.trace.ground.known);
-  EXPECT_FALSE(on_slope.trace.ground.stepped);
-  EXPECT_EQ(on_slope.trace.remembered_treads, 0);
-  EXPECT_TRUE(on_stairs.trace.ground.stepped);
-  EXPECT_EQ(on_stairs.trace.remembered_treads, 3);
+  EXPECT_TRUE(on_slope.out.ground.known);
+  EXPECT_FALSE(on_slope.out.ground.stepped);
+  EXPECT_EQ(on_slope.out.remembered_treads, 0);
+  EXPECT_TRUE(on_stairs.out.ground.stepped);
+  EXPECT_EQ(on_stairs.out.remembered_treads, 3);
 }
 
 TEST(GroundSense, TakesEachStanceDownOnceInItsMiddle) {
   Spinning robot(TerrainConfig{}, stairs);
   robot.step();
-  for (int i = 0; i < 50; ++i) robot.sense.update(kTick, robot.trace);  // the same stance goes on
-  EXPECT_FALSE(robot.trace.ground.known);
+  for (int i = 0; i < 50; ++i) robot.update();  // the same stance goes on
+  EXPECT_FALSE(robot.out.ground.known);
   robot.steps(2);
-  EXPECT_TRUE(robot.trace.ground.known);
+  EXPECT_TRUE(robot.out.ground.known);
 }
 
 TEST(GroundSense, IgnoresFeetBeforeMidStanceInTheAirAndOffTheGround) {
   Spinning robot(TerrainConfig{}, stairs);
   for (int i = 0; i < 10; ++i) robot.step(/*measured=*/false);
-  EXPECT_FALSE(robot.trace.ground.known);
+  EXPECT_FALSE(robot.out.ground.known);
   for (const bool stance : {true, false}) {
     for (int stride = 100; stride < 110; ++stride) {
       for (const Leg leg : kLegs) {
-        robot.trace.contacts[leg].measured = true;
-        robot.trace.gait.leg[leg] = {.stance = stance, .progress = stance ? 0.4 : 0.9};
-        robot.trace.gait.leg[leg].stride = stride + (stance ? 0 : 100);
+        robot.feet[leg].measured = true;
+        robot.gait.leg[leg] = {.stance = stance, .progress = stance ? 0.4 : 0.9};
+        robot.gait.leg[leg].stride = stride + (stance ? 0 : 100);
       }
-      robot.sense.update(kTick, robot.trace);
+      robot.update();
     }
   }
-  EXPECT_FALSE(robot.trace.ground.known);
+  EXPECT_FALSE(robot.out.ground.known);
 }
 
 TEST(GroundSense, OnStepsThePlaneIsTheRememberedOne) {
@@ -131,15 +134,15 @@ TEST(GroundSense, OnStepsThePlaneIsTheRememberedOne) {
     PlaneEstimator four_feet(config);
     PlaneInput in;
     for (const Leg leg : kLegs) {
-      in.p_WC[leg] = robot.trace.contacts[leg].p_WC;
+      in.p_WC[leg] = robot.feet[leg].p_WC;
       in.touching[leg] = true;
     }
     through_feet = four_feet.update(in, kTick);
   }
-  EXPECT_GT(robot.trace.plane.weight, 100.0);  // footholds, not feet
+  EXPECT_GT(robot.out.plane.weight, 100.0);  // footholds, not feet
   // Long-run gradient of the stairs over the ring of feet; the four feet alone swing about it.
-  EXPECT_NEAR(robot.trace.plane.a2, 0.0, 0.02);
-  EXPECT_GT(std::abs(through_feet.a1 - robot.trace.plane.a1) + std::abs(through_feet.a2), 0.02);
+  EXPECT_NEAR(robot.out.plane.a2, 0.0, 0.02);
+  EXPECT_GT(std::abs(through_feet.a1 - robot.out.plane.a1) + std::abs(through_feet.a2), 0.02);
 }
 
 TEST(GroundSense, MovesAPlannedFootholdOffTheEdgeToTheHeightOfItsTread) {
@@ -174,11 +177,11 @@ TEST(GroundSense, StartsAfresh) {
   Spinning robot(TerrainConfig{}, stairs);
   robot.steps(40);
   std::array<Vec3, kLegCount> contacts;
-  for (const Leg leg : kLegs) contacts[index(leg)] = robot.trace.contacts[leg].p_WC;
+  for (const Leg leg : kLegs) contacts[index(leg)] = robot.feet[leg].p_WC;
   robot.sense.start(contacts);
-  robot.sense.update(kTick, robot.trace);
-  EXPECT_FALSE(robot.trace.ground.known);
-  EXPECT_EQ(robot.trace.remembered_treads, 0);
+  robot.update();
+  EXPECT_FALSE(robot.out.ground.known);
+  EXPECT_EQ(robot.out.remembered_treads, 0);
 }
 
 }  // namespace

@@ -11,7 +11,8 @@ namespace {
 using test::distance;
 using test::kTick;
 
-/// A robot that stands level at the origin, in sensors and trace.
+/// A robot that stands level at the origin. The public members are what the next call takes, the
+/// last tick's and this one's alike.
 class Standing {
  public:
   explicit Standing(const Config& config)
@@ -19,41 +20,57 @@ class Standing {
     BasePose start;
     start.p_WB.z() = 0.29;
     localization.reset(start);
-    trace.sensors.specific_force_B.z() = kGravity;
-    trace.sensors.foot_contact = PerLeg<bool>::filled(true);
+    sensors.specific_force_B.z() = kGravity;
+    sensors.foot_contact = PerLeg<bool>::filled(true);
     for (const Leg leg : kLegs) {
       const LegGeometry& g = model.legs()[leg];
       const Vec3 p_HF(0.0, g.abad_offset, g.foot_radius - start.p_WB.z());
-      trace.sensors.joint_position[leg] = inverse_kinematics(g, p_HF).q;
-      trace.feet[leg] = foot_state(g, trace.sensors.joint_position[leg], Vec3::Zero());
+      sensors.joint_position[leg] = inverse_kinematics(g, p_HF).q;
+      out.feet[leg] = foot_state(g, sensors.joint_position[leg], Vec3::Zero());
     }
-    localization.start(start, trace);
+    const RobotState at_rest = localization.start(start, sensors.joint_position);
+    out.state = at_rest;
   }
 
+  void estimate() {
+    out = localization.estimate(
+        {sensors, out.state, contacts, gait, plane, ground, f_W, JointCommand{}}, model, kTick);
+  }
+  void find_contacts() {
+    contacts = localization.find_contacts(
+        {sensors.foot_contact, encoder_stuck, out.state, out.feet, gait, plane, ground});
+  }
   void tick() {
-    trace.sensors.time += kTick;
-    localization.estimate(model, kTick, trace);
-    localization.find_contacts(trace);
+    sensors.time += kTick;
+    estimate();
+    find_contacts();
   }
   /// Contact flag of `leg` as the controller takes it, after one tick of a raw `flag`.
   bool measured(Leg leg, bool flag) {
-    (*trace.sensors.foot_contact)[leg] = flag;
-    localization.find_contacts(trace);
-    return trace.contacts[leg].measured;
+    (*sensors.foot_contact)[leg] = flag;
+    find_contacts();
+    return contacts[leg].measured;
   }
   void walk(Leg leg, bool stance, double progress) {
-    trace.gait.walking = true;
-    trace.gait.leg[leg].stance = stance;
-    trace.gait.leg[leg].progress = progress;
+    gait.walking = true;
+    gait.leg[leg].stance = stance;
+    gait.leg[leg].progress = progress;
   }
   bool in_contact(Leg leg) {
-    localization.find_contacts(trace);
-    return trace.contacts[leg].in_contact;
+    find_contacts();
+    return contacts[leg].in_contact;
   }
 
   RobotModel model;
   Localization localization;
-  TickTrace trace;
+  SensorReading sensors;
+  PerLeg<bool> encoder_stuck{};
+  GaitPhase gait;
+  TerrainPlane plane;
+  GroundEstimate ground;
+  PerLeg<Vec3> f_W;
+  LocalizationOutput out;
+  FootContacts contacts;
 };
 
 TEST(Localization, AFlagCountsWhenItHasHeldForTheDebounceTime) {
@@ -79,12 +96,12 @@ TEST(Localization, EveryFootIsDebouncedByItself) {
   Config config;
   config.estimation.contact_debounce = 2;
   Standing robot(config);
-  for (int i = 0; i < 2; ++i) robot.localization.find_contacts(robot.trace);
+  for (int i = 0; i < 2; ++i) robot.find_contacts();
   // FR is wrong in one tick, FL in the next.
   EXPECT_TRUE(robot.measured(Leg::kFR, false));
-  (*robot.trace.sensors.foot_contact)[Leg::kFR] = true;
+  (*robot.sensors.foot_contact)[Leg::kFR] = true;
   EXPECT_TRUE(robot.measured(Leg::kFL, false));
-  EXPECT_TRUE(robot.trace.contacts[Leg::kFR].measured);
+  EXPECT_TRUE(robot.contacts[Leg::kFR].measured);
 }
 
 TEST(Localization, WithoutDebouncingTheFlagIsTakenAsItIs) {
@@ -96,13 +113,25 @@ TEST(Localization, WithoutDebouncingTheFlagIsTakenAsItIs) {
   }
 }
 
+TEST(Localization, AFootWhoseEncodersAreStuckIsNotMeasured) {
+  Config config;
+  config.estimation.contact_debounce = 3;
+  Standing robot(config);
+  for (int i = 0; i < 3; ++i) robot.find_contacts();
+  EXPECT_TRUE(robot.contacts[Leg::kFL].measured);
+  robot.encoder_stuck[Leg::kFL] = true;
+  robot.find_contacts();
+  EXPECT_FALSE(robot.contacts[Leg::kFL].measured);
+  EXPECT_TRUE(robot.contacts[Leg::kRR].measured);
+}
+
 TEST(Localization, WithoutContactSensingTheScheduleStandsIn) {
   Standing robot{Config{}};
-  robot.trace.sensors.foot_contact.reset();
+  robot.sensors.foot_contact.reset();
   for (const bool stance : {true, false}) {
     robot.walk(Leg::kFR, stance, 0.9);
     EXPECT_EQ(robot.in_contact(Leg::kFR), stance);
-    EXPECT_EQ(robot.trace.contacts[Leg::kFR].measured, stance);
+    EXPECT_EQ(robot.contacts[Leg::kFR].measured, stance);
   }
 }
 
@@ -131,12 +160,12 @@ TEST(Localization, FeetRollOnThePlaneOfASlopeAndOnTheLevelOfATread) {
     Config config;
     config.terrain.contact_normal = choice;
     Standing robot(config);
-    robot.trace.plane = slope;
-    robot.trace.ground.stepped = stepped;
-    robot.localization.find_contacts(robot.trace);
-    const FootContact& contact = robot.trace.contacts[Leg::kRR];
+    robot.plane = slope;
+    robot.ground.stepped = stepped;
+    robot.find_contacts();
+    const FootContact& contact = robot.contacts[Leg::kRR];
     const double r = robot.localization.foot().radius();
-    EXPECT_LT(distance(contact.p_WC, robot.trace.state.p_WF[Leg::kRR] - r * contact.n_W), 1e-15);
+    EXPECT_LT(distance(contact.p_WC, robot.out.state.p_WF[Leg::kRR] - r * contact.n_W), 1e-15);
     return contact.n_W;
   };
   EXPECT_EQ(normal(ContactNormal::kAuto, false), slope.normal());
@@ -148,9 +177,9 @@ TEST(Localization, FeetRollOnThePlaneOfASlopeAndOnTheLevelOfATread) {
 TEST(Localization, AStandingRobotStaysWhereItIs) {
   Standing robot{Config{}};
   for (int i = 0; i < 500; ++i) robot.tick();
-  EXPECT_LT(distance(robot.trace.state.p_WB, Vec3(0.0, 0.0, 0.29)), 1e-9);
-  EXPECT_LT(robot.trace.state.v_WB_W.norm(), 1e-9);
-  EXPECT_LT(distance(robot.trace.state.R_WB, Mat3::Identity()), 1e-12);
+  EXPECT_LT(distance(robot.out.state.p_WB, Vec3(0.0, 0.0, 0.29)), 1e-9);
+  EXPECT_LT(robot.out.state.v_WB_W.norm(), 1e-9);
+  EXPECT_LT(distance(robot.out.state.R_WB, Mat3::Identity()), 1e-12);
 }
 
 /// Of a robot whose ground rises by 0.27 along x.
@@ -158,10 +187,10 @@ CreepEstimate creep_on_slope(CreepModelMode mode, bool stepped) {
   Config config;
   config.creep.mode = mode;
   Standing robot(config);
-  robot.trace.plane.a1 = 0.27;
-  robot.trace.ground.stepped = stepped;
+  robot.plane.a1 = 0.27;
+  robot.ground.stepped = stepped;
   robot.tick();
-  return robot.trace.creep;
+  return robot.out.creep;
 }
 
 TEST(Localization, CreepsDownASlopeButNotOnItsSteps) {
@@ -179,17 +208,17 @@ TEST(Localization, TheCreepOfTwistingShanksMovesTheTrunk) {
     config.creep.mode = mode;
     config.estimation.attitude_time_constant = 1000.0;
     Standing robot(config);
-    robot.trace.plane.a1 = 0.27;
+    robot.plane.a1 = 0.27;
     for (const Leg leg : kLegs) {
       robot.walk(leg, true, 0.5);
-      robot.trace.contacts[leg].measured = true;
-      robot.trace.contacts[leg].n_W = robot.trace.plane.normal();
+      robot.contacts[leg].measured = true;
+      robot.contacts[leg].n_W = robot.plane.normal();
     }
-    robot.trace.sensors.w_WB_B.z() = 0.7;
+    robot.sensors.w_WB_B.z() = 0.7;
     for (int i = 0; i < 10; ++i) {
-      robot.localization.estimate(robot.model, kTick, robot.trace);
+      robot.estimate();
     }
-    return robot.trace.state.v_WB_W.x();
+    return robot.out.state.v_WB_W.x();
   };
   const double shift =
       velocity_along_slope(CreepModelMode::kStored) - velocity_along_slope(CreepModelMode::kOff);
@@ -207,11 +236,11 @@ TEST(Localization, StandsOnTheTruthWhenToldTo) {
   BaseTruth truth;
   truth.p_WB = Vec3(1.0, -2.0, 0.3);
   truth.R_WB = rotation_from_rpy({0.1, -0.2, 2.0});
-  robot.trace.sensors.truth = truth;
+  robot.sensors.truth = truth;
   robot.tick();
-  EXPECT_EQ(robot.trace.state.p_WB, truth.p_WB);
-  EXPECT_EQ(robot.trace.state.R_WB, truth.R_WB);
-  EXPECT_NEAR(robot.trace.state.rpy.yaw, 2.0, 1e-15);
+  EXPECT_EQ(robot.out.state.p_WB, truth.p_WB);
+  EXPECT_EQ(robot.out.state.R_WB, truth.R_WB);
+  EXPECT_NEAR(robot.out.state.rpy.yaw, 2.0, 1e-15);
 }
 
 }  // namespace

@@ -34,11 +34,7 @@ struct PerLeg {
   constexpr auto begin() const { return values.begin(); }
   constexpr auto end() const { return values.end(); }
 
-  static constexpr PerLeg filled(const T& value) {
-    PerLeg p;
-    p.values.fill(value);
-    return p;
-  }
+  static constexpr PerLeg filled(const T& value) { return {{value, value, value, value}}; }
 
  private:
   static constexpr std::array<T, kLegCount> initial_values() {

@@ -22,31 +22,29 @@ TerrainPlane GroundSense::start(const std::array<Vec3, kLegCount>& contacts) {
   return plane;
 }
 
-void GroundSense::update(double dt, TickTrace& trace) noexcept {
+GroundSenseOutput GroundSense::update(const GroundSenseInput& in, double dt) noexcept {
   PlaneInput plane_input;
   for (const Leg leg : kLegs) {
-    plane_input.p_WC[leg] = trace.contacts[leg].p_WC;
-    plane_input.touching[leg] = trace.contacts[leg].in_contact && trace.contacts[leg].measured;
+    plane_input.p_WC[leg] = in.contacts[leg].p_WC;
+    plane_input.touching[leg] = in.contacts[leg].in_contact && in.contacts[leg].measured;
   }
-  if (trace.ground.stepped) plane_input.remembered = memory_.plane();
-  trace.plane = plane_estimator_.update(plane_input, dt);
-  remember_footholds(trace);
-  trace.ground = classifier_.estimate();
-  trace.remembered_treads = static_cast<int>(memory_.tread_count());
+  if (classifier_.estimate().stepped) plane_input.remembered = memory_.plane();
+  const TerrainPlane plane = plane_estimator_.update(plane_input, dt);
+  remember_footholds(in);
+  return {plane, classifier_.estimate(), static_cast<int>(memory_.tread_count())};
 }
 
 // In the middle of a stance the foot carries, and neither slides in nor lifts off.
-void GroundSense::remember_footholds(TickTrace& trace) noexcept {
+void GroundSense::remember_footholds(const GroundSenseInput& in) noexcept {
   constexpr double kMidStance = 0.5;
   for (const Leg leg : kLegs) {
-    const LegPhase& phase = trace.gait.leg[leg];
-    const bool settled =
-        phase.stance && phase.progress >= kMidStance && trace.contacts[leg].measured;
+    const LegPhase& phase = in.gait.leg[leg];
+    const bool settled = phase.stance && phase.progress >= kMidStance && in.contacts[leg].measured;
     if (!settled || remembered_stride_[leg] == phase.stride) continue;
     remembered_stride_[leg] = phase.stride;
-    const Vec3& p_WF = trace.state.p_WF[leg];
+    const Vec3& p_WF = in.state.p_WF[leg];
     classifier_.add(leg, p_WF);
-    memory_.add(p_WF - foot_radius_ * Vec3::UnitZ(), trace.state.p_WG.head<2>());
+    memory_.add(p_WF - foot_radius_ * Vec3::UnitZ(), in.state.p_WG.head<2>());
   }
 }
 

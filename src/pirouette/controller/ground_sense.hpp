@@ -5,9 +5,25 @@
 #include "pirouette/terrain/ground_classifier.hpp"
 #include "pirouette/terrain/plane_estimator.hpp"
 #include "pirouette/terrain/terrain_config.hpp"
-#include "pirouette/types/tick_trace.hpp"
+#include "pirouette/types/foot_contacts.hpp"
+#include "pirouette/types/foothold_plan.hpp"
+#include "pirouette/types/gait_phase.hpp"
+#include "pirouette/types/robot_state.hpp"
 
 namespace pirouette {
+
+/// All of this tick.
+struct GroundSenseInput {
+  const FootContacts& contacts;
+  const GaitPhase& gait;
+  const RobotState& state;
+};
+
+struct GroundSenseOutput {
+  TerrainPlane plane;
+  GroundEstimate ground;
+  int remembered_treads = 0;  ///< of the stairs in the foothold memory
+};
 
 class GroundSense {
  public:
@@ -16,15 +32,14 @@ class GroundSense {
   /// The ground is the plane through `contacts` (m) until feet say otherwise.
   TerrainPlane start(const std::array<Vec3, kLegCount>& contacts);
 
-  /// trace.contacts, gait, state -> trace.plane, ground, remembered_treads.
-  void update(double dt, TickTrace& trace) noexcept;
+  GroundSenseOutput update(const GroundSenseInput& in, double dt) noexcept;
 
   /// On stepped ground: the planned foothold moved off the edges that the memory knows, at the
   /// height of its tread. `centre_offset` (m) is the sphere centre's height above the contact.
   Foothold adapted(const Foothold& planned, double centre_offset) const noexcept;
 
  private:
-  void remember_footholds(TickTrace& trace) noexcept;
+  void remember_footholds(const GroundSenseInput& in) noexcept;
 
   TerrainConfig config_;
   double foot_radius_;

@@ -1,6 +1,7 @@
 // From sensors to state: attitude, leg odometry, contacts and creep, on one foot policy.
 #pragma once
 
+#include "pirouette/controller/contact_debounce.hpp"
 #include "pirouette/controller/controller_config.hpp"
 #include "pirouette/estimation/attitude_filter.hpp"
 #include "pirouette/estimation/leg_odometry_filter.hpp"
@@ -8,9 +9,46 @@
 #include "pirouette/estimation/tilt_bias.hpp"
 #include "pirouette/foot/rolling_foot.hpp"
 #include "pirouette/model/robot_model.hpp"
-#include "pirouette/types/tick_trace.hpp"
+#include "pirouette/types/foot_contacts.hpp"
+#include "pirouette/types/foot_state.hpp"
+#include "pirouette/types/gait_phase.hpp"
+#include "pirouette/types/ground_estimate.hpp"
+#include "pirouette/types/joint_command.hpp"
+#include "pirouette/types/robot_state.hpp"
+#include "pirouette/types/sensor_reading.hpp"
+#include "pirouette/types/terrain_plane.hpp"
 
 namespace pirouette {
+
+/// What the state is estimated from. `last_...`: of the tick before.
+struct LocalizationInput {
+  const SensorReading& sensors;
+  const RobotState& last_state;
+  const FootContacts& last_contacts;
+  const GaitPhase& last_gait;
+  const TerrainPlane& last_plane;
+  const GroundEstimate& last_ground;
+  const PerLeg<Vec3>& last_f_W;  ///< N, of the whole-body solution, world axes
+  const JointCommand& last_command;
+};
+
+struct LocalizationOutput {
+  RobotState state;
+  PerLeg<FootState> feet{};
+  CreepEstimate creep;
+  Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk
+};
+
+/// What tells where the feet stand. `last_...`: of the tick before.
+struct ContactInput {
+  const std::optional<PerLeg<bool>>& foot_contact;  ///< raw flags; absent: none are measured
+  const PerLeg<bool>& encoder_stuck;
+  const RobotState& state;
+  const PerLeg<FootState>& feet;
+  const GaitPhase& gait;
+  const TerrainPlane& last_plane;
+  const GroundEstimate& last_ground;
+};
 
 class Localization {
  public:
@@ -18,27 +56,35 @@ class Localization {
 
   void reset(const BasePose& start);
 
-  /// Starts the odometry at `start` with every foot of `trace.feet` on the ground; sets the pose
-  /// and `p_WF` of trace.state.
-  void start(const BasePose& start, TickTrace& trace);
+  /// Starts the odometry at `start` with all feet on the ground, at `joint_position` (rad). Returns
+  /// the state at rest there, without what only estimate() knows: the trunk's pose and `p_WF`.
+  RobotState start(const BasePose& start, const PerLeg<Vec3>& joint_position);
 
-  /// trace.sensors -> trace.feet, creep, state; also `model`. Uses the contacts, plane, gait and
-  /// forces of the last tick.
-  void estimate(RobotModel& model, double dt, TickTrace& trace) noexcept;
+  /// The robot's state; also brings `model` to it.
+  LocalizationOutput estimate(const LocalizationInput& in, RobotModel& model, double dt) noexcept;
 
-  /// trace.sensors, gait, state, plane, ground -> trace.contacts.
-  void find_contacts(TickTrace& trace) noexcept;
+  FootContacts find_contacts(const ContactInput& in) noexcept;
 
   const RollingFoot& foot() const { return foot_; }
 
  private:
-  void estimate_base(double dt, TickTrace& trace) noexcept;
-  bool debounced(const TickTrace& trace, Leg leg) noexcept;
-  double trust(const TickTrace& trace, Leg leg) const;
-  FootOdometry foot_odometry(const TickTrace& trace, Leg leg) const;
-  Vec3 joint_feedback_force(const TickTrace& trace, Leg leg) const;
-  CreepInput creep_input(const TickTrace& trace) const;
-  Vec3 contact_normal(const TickTrace& trace) const;
+  /// The trunk's motion as this tick knows it.
+  struct Trunk {
+    Vec3 p_WB;
+    Vec3 v_WB_W;
+    Mat3 R_WB;
+    Vec3 w_WB_B;
+  };
+
+  Trunk estimate_trunk(const LocalizationInput& in, const PerLeg<FootState>& feet,
+                       const CreepEstimate& creep, double dt) noexcept;
+  double trust(const LocalizationInput& in, Leg leg) const;
+  FootOdometry foot_odometry(const LocalizationInput& in, const FootState& foot, const Mat3& R_WB,
+                             const Vec3& w_WB_B, const CreepEstimate& creep, Leg leg) const;
+  Vec3 joint_feedback_force(const LocalizationInput& in, Leg leg) const;
+  CreepInput creep_input(const LocalizationInput& in) const;
+  Vec3 contact_normal(const ContactInput& in) const;
+  bool touches(const ContactInput& in, Leg leg) noexcept;
 
   ControllerConfig config_;
   PerLeg<LegGeometry> legs_;
@@ -49,7 +95,7 @@ class Localization {
   TiltBias tilt_bias_;
   YawUnwrapper yaw_;
   PerLeg<bool> landed_early_{};
-  PerLeg<int> flag_changed_for_{};  ///< ticks that the raw flag has differed from the accepted one
+  PerLeg<ContactDebounce> flags_;
 };
 
 }  // namespace pirouette

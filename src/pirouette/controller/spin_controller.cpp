@@ -1,34 +1,24 @@
 #include "pirouette/controller/spin_controller.hpp"
 
-#include <chrono>
-
 #include "pirouette/com/com_planner.hpp"
 #include "pirouette/controller/body_horizon.hpp"
 #include "pirouette/controller/command_guard.hpp"
+#include "pirouette/controller/foot_planner.hpp"
+#include "pirouette/controller/force_planner.hpp"
+#include "pirouette/controller/gait_timing.hpp"
 #include "pirouette/controller/ground_sense.hpp"
+#include "pirouette/controller/joint_control.hpp"
+#include "pirouette/controller/lift_off_points.hpp"
 #include "pirouette/controller/localization.hpp"
-#include "pirouette/controller/push_recovery.hpp"
+#include "pirouette/controller/motion_planner.hpp"
 #include "pirouette/controller/sensor_guard.hpp"
+#include "pirouette/controller/tick_clock.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
-#include "pirouette/gait/foothold_planner.hpp"
-#include "pirouette/gait/gait_clock.hpp"
-#include "pirouette/lowlevel/convex_mpc.hpp"
-#include "pirouette/lowlevel/swing_leg.hpp"
-#include "pirouette/lowlevel/whole_body_control.hpp"
 #include "pirouette/model/robot_model.hpp"
-#include "pirouette/path/path_reference.hpp"
-#include "pirouette/path/position_aid.hpp"
-#include "pirouette/path/tracker.hpp"
 
 namespace pirouette {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double microseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::micro>(Clock::now() - start).count();
-}
 
 /// Joint angles with every foot below its hip, CoM (taken at the trunk origin) at the working
 /// height.
@@ -48,363 +38,226 @@ Vec2 hip_centre(const PerLeg<LegGeometry>& legs) {
   return sum / static_cast<double>(kLegCount);
 }
 
+NominalStance nominal_stance(const BodyConfig& body, RobotModel& model) {
+  NominalStance stance;
+  const PerLeg<LegGeometry>& legs = model.legs();
+  stance.q = nominal_posture(legs, body.height);
+  stance.p_BG = model.com(stance.q);
+  const Vec2 centre = hip_centre(legs);
+  for (const Leg leg : kLegs) {
+    const LegGeometry& g = legs[leg];
+    stance.foothold_H[leg] =
+        g.p_BH.head<2>() + Vec2(0.0, g.abad_offset) - centre +
+        Vec2(fore_sign(leg) * body.stance_offset[0], side_sign(leg) * body.stance_offset[1]);
+  }
+  return stance;
+}
+
+/// m. With the point-foot model the terrain plane runs through the sphere centres.
+double com_height_above_plane(const ControllerConfig& config, const PerLeg<LegGeometry>& legs) {
+  const double foot_radius = legs[Leg::kFR].foot_radius;
+  const double hidden_radius = foot_radius - RollingFoot(config.foot.model, foot_radius).radius();
+  return config.body.height - hidden_radius;
+}
+
+ComPlannerInput com_planner_input(const RobotState& state, const GaitPhase& gait,
+                                  const FootContacts& contacts, const PerLeg<Vec3>& p_WF_liftoff,
+                                  const FootholdPlan& footholds, const PathPoint& path) {
+  ComPlannerInput in;
+  in.gait = gait;
+  in.reference = path.p_WG;
+  in.com = state.p_WG.head<2>();
+  for (const Leg leg : kLegs) {
+    in.contact[leg] = contacts[leg].p_WC.head<2>();
+    in.lift_off[leg] = p_WF_liftoff[leg].head<2>();
+    in.next_foothold[leg] = footholds[leg].p_WC.head<2>();
+    in.touching[leg] = contacts[leg].in_contact;
+  }
+  return in;
+}
+
 }  // namespace
 
+/// The stages, and what is kept of the last tick. A tick reads `last` only as `last_...` of a
+/// stage's input; its own values are constants of tick() until they become the next `last`.
 struct SpinController::Impl {
   Impl(const ControllerConfig& c, RobotModel robot)
       : config(c),
         model(std::move(robot)),
-        legs(model.legs()),
-        posture(nominal_posture(legs, c.body.height)),
+        com_height(com_height_above_plane(c, model.legs())),
+        stance(nominal_stance(c.body, model)),
+        tick_clock(1.0 / c.control.rate),
         sensor_guard(c.safety, 1.0 / c.control.rate),
-        localization(c, legs),
-        ground(c.terrain, legs[Leg::kFR].foot_radius),
-        push_recovery(c.gait),
-        clock(c.gait),
-        aid_offset(c.aid),
-        path_reference(c.path),
-        tracker(c.path, c.control.rate),
-        foothold_planner(c.foothold),
+        localization(c, model.legs()),
+        gait_timing(c.gait),
+        ground_sense(c.terrain, model.legs()[Leg::kFR].foot_radius),
+        motion_planner(c.path, c.aid, c.control.rate),
+        foot_planner(c.foothold, c.gait, c.body.height, localization.foot(), model.legs(), stance),
         com_planner(c.com),
-        mpc(c.mpc, model.mass(), model.inertia(posture)),
-        wbc(c.wbc, c.mpc),
-        guard(c.joint, legs) {
-    p_BG_nominal = model.com(posture);
-    const Vec2 centre = hip_centre(legs);
-    for (const Leg leg : kLegs) {
-      const LegGeometry& g = legs[leg];
-      nominal_H[leg] =
-          g.p_BH.head<2>() + Vec2(0.0, g.abad_offset) - centre +
-          Vec2(fore_sign(leg) * c.body.stance_offset[0], side_sign(leg) * c.body.stance_offset[1]);
-    }
+        force_planner(c.mpc, c.gait.period, com_height, model.mass(), model.inertia(stance.q)),
+        joint_control(c.wbc, c.mpc, c.joint, model.legs(), localization.foot().radius()) {
     reset(BasePose{});
   }
 
   void reset(const BasePose& pose);
-  void start_from_first_reading();
-  double measured_period(const SensorReading& sensors) const;
+  void start_from(const SensorReading& first);
+  const JointCommand& tick(const SensorReading& sensors, const MotionCommand& command) noexcept;
 
-  // The stages of a tick, in their order.
-  void follow_contacts();
-  void set_gait(const MotionCommand& command, double dt);
-  void plan_body(const MotionCommand& command, double dt);
-  void plan_feet(double dt);
-  void solve_mpc();
-  void solve_whole_body(double dt);
-
-  double swing_height() const;
-  Vec3 friction_torque(Leg leg, const Vec3& dq) const;
-  double com_height_above_plane() const;
-  MpcInput mpc_input() const;
-  bool has_fallen() const;
+  BodyReference reference(const MotionPlan& motion, const ComPlan& com_plan,
+                          const TerrainPlane& plane, const RobotState& state) const;
+  bool has_fallen(const RobotState& state, const TerrainPlane& plane) const;
   void stand_down(ControllerStatus why);
 
   ControllerConfig config;
   RobotModel model;
-  PerLeg<LegGeometry> legs;
-  PerLeg<Vec3> posture;  ///< rad, nominal joint angles
-  Vec3 p_BG_nominal;
-  PerLeg<Vec2> nominal_H{};  ///< m, footholds from the CoM
+  double com_height;  ///< m, above the plane
+  NominalStance stance;
 
+  TickClock tick_clock;
   SensorGuard sensor_guard;
   Localization localization;
-  GroundSense ground;
-  PushRecovery push_recovery;
-  GaitClock clock;
-  PositionAidOffset aid_offset;
-  PathReference path_reference;
-  Tracker tracker;
-  FootholdPlanner foothold_planner;
+  GaitTiming gait_timing;
+  LiftOffPoints lift_off_points;
+  GroundSense ground_sense;
+  MotionPlanner motion_planner;
+  FootPlanner foot_planner;
   CentreOfMassPlanner com_planner;
-  ConvexMpc mpc;
-  WholeBodyControl wbc;
-  CommandGuard guard;
+  ForcePlanner force_planner;
+  JointControl joint_control;
 
   BasePose start;
   bool started = false;
-  bool recovering = false;  ///< from a push
-  int mpc_failures = 0;     ///< solutions in a row
-  int wbc_failures = 0;
-  int ticks_until_mpc = 0;
-  PerLeg<bool> solved_contacts{};  ///< contact set of the last MPC solution
-  PerLeg<bool> was_in_contact{};
-  PerLeg<Vec3> p_WF_liftoff{};
-  ContactForces last_forces;
-
-  TickTrace trace;
+  TickTrace last;
   TickTiming timing;
 };
 
 void SpinController::Impl::reset(const BasePose& pose) {
   start = pose;
-  started = recovering = false;
-  trace = TickTrace{};
+  started = false;
+  last = TickTrace{};
   timing = TickTiming{};
-  mpc_failures = wbc_failures = ticks_until_mpc = 0;
-  was_in_contact = {};
-  last_forces = ContactForces{};
+  tick_clock.reset();
   sensor_guard.reset();
   localization.reset(pose);
-  push_recovery.reset();
-  clock.reset();
-  aid_offset.reset();
-  path_reference.reset();
-  tracker.reset();
+  gait_timing.reset();
+  motion_planner.reset();
   com_planner.reset();
+  force_planner.reset();
 }
 
-void SpinController::Impl::start_from_first_reading() {
-  const SensorReading& first = sensor_guard.input().sensors;
-  for (const Leg leg : kLegs) {
-    trace.feet[leg] = foot_state(legs[leg], first.joint_position[leg], first.joint_velocity[leg]);
-  }
-  localization.start(start, trace);
-  p_WF_liftoff = trace.state.p_WF;
+void SpinController::Impl::start_from(const SensorReading& first) {
+  last.state = localization.start(start, first.joint_position);
+  lift_off_points.start(last.state.p_WF);
   std::array<Vec3, kLegCount> contacts;
   for (const Leg leg : kLegs) {
-    contacts[index(leg)] = localization.foot().contact_point(p_WF_liftoff[leg], Vec3::UnitZ());
+    contacts[index(leg)] = localization.foot().contact_point(last.state.p_WF[leg], Vec3::UnitZ());
   }
-  trace.plane = ground.start(contacts);
-  guard.reset(first.joint_position);
+  last.plane = ground_sense.start(contacts);
+  joint_control.start(first.joint_position);
   started = true;
 }
 
-double SpinController::Impl::measured_period(const SensorReading& sensors) const {
-  const double nominal = 1.0 / config.control.rate;
-  if (!started) return nominal;
-  return std::clamp(sensors.time - trace.sensors.time, 0.5 * nominal, 10.0 * nominal);
-}
-
-/// With the point-foot model the terrain plane runs through the sphere centres.
-double SpinController::Impl::com_height_above_plane() const {
-  const double hidden_radius = legs[Leg::kFR].foot_radius - localization.foot().radius();
-  return config.body.height - hidden_radius;
-}
-
-/// Duty and stride by rule: the yaw rate shortens the stride, steps lengthen the stance; both take
-/// effect at the next touchdown. A push shortens the stride at once, and sets the feet on the
-/// capture point (plan_feet).
-void SpinController::Impl::set_gait(const MotionCommand& command, double dt) {
-  const GaitConfig& gait = config.gait;
-  const bool careful = gait.adapt && trace.ground.stepped;
-  const Vec2 v_error = (trace.state.v_WG_W - trace.reference.v_WG_W).head<2>();
-  recovering = push_recovery.update(v_error, dt) && trace.gait.walking && gait.adapt && !careful;
-  const double yaw_rate = path_reference.follows_path() ? trace.path.yaw_rate : command.yaw_rate;
-  const double stride = recovering ? gait.recovery_period_at(yaw_rate) : gait.period_at(yaw_rate);
-  clock.set_timing(stride, careful ? gait.step_duty_at(stride) : gait.duty);
-  if (recovering) clock.hurry();
-  trace.gait = clock.update(command.walk, dt);
-  trace.status = trace.gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding;
-}
-
-double SpinController::Impl::swing_height() const {
-  const GaitConfig& gait = config.gait;
-  if (!gait.adapt || !trace.ground.stepped) return gait.swing_height;
-  const double over_steps = trace.ground.step_height + gait.step_clearance;
-  return std::clamp(over_steps, gait.swing_height,
-                    std::max(gait.swing_height, gait.max_swing_height));
-}
-
-void SpinController::Impl::follow_contacts() {
-  for (const Leg leg : kLegs) {
-    const bool in_contact = trace.contacts[leg].in_contact;
-    if (was_in_contact[leg] && !in_contact) p_WF_liftoff[leg] = trace.state.p_WF[leg];
-    was_in_contact[leg] = in_contact;
-  }
-}
-
-void SpinController::Impl::plan_body(const MotionCommand& command, double dt) {
-  trace.aid_offset =
-      aid_offset.update(trace.sensors.aid, trace.state.p_WB.head<2>(), trace.state.time, dt);
-  // The set-point lives in the aid's frame, everything else in the odometry's.
-  RobotState in_aid_frame = trace.state;
-  in_aid_frame.p_WG.head<2>() += trace.aid_offset;
-  trace.path = path_reference.update(command, in_aid_frame, dt);
-  trace.path.p_WG -= trace.aid_offset;
-  trace.twist = tracker.update(trace.path, trace.state, dt);
-  trace.integral_H = tracker.integral_H();
-}
-
-void SpinController::Impl::plan_feet(double dt) {
-  const RobotState& state = trace.state;
-  FootholdInput in;
-  in.gait = trace.gait;
-  in.nominal_H = nominal_H;
-  const RollingFoot& foot = localization.foot();
-  in.centre_offset = foot.centre_offset();
+BodyReference SpinController::Impl::reference(const MotionPlan& motion, const ComPlan& com_plan,
+                                              const TerrainPlane& plane,
+                                              const RobotState& state) const {
+  HorizonInput in;
+  in.path = motion.path;
+  in.twist = motion.twist;
+  in.com_plan = com_plan;
+  in.plane = plane;
   in.p_WG = state.p_WG.head<2>();
-  in.v_WG_H = rot2(state.rpy.yaw).transpose() * state.v_WG_W.head<2>();
   in.yaw = state.rpy.yaw;
-  if (recovering) in.capture_time = std::sqrt(config.body.height / kGravity);
-  in.twist = trace.twist;
-  in.plane = trace.plane;
-  if (config.foothold.rolling_compensation && foot.radius() > 0.0) {
-    StanceMotion motion;
-    motion.p_BG = p_BG_nominal;
-    motion.R_HB = rotation_from_rpy({state.rpy.roll, state.rpy.pitch, 0.0});
-    motion.n_H = rot_z(state.rpy.yaw).transpose() * trace.plane.normal();
-    motion.twist = trace.twist;
-    motion.duration = trace.gait.stance_duration;
-    for (const Leg leg : kLegs) {
-      motion.p_BF = legs[leg].p_BH + foot_position_H(legs[leg], posture[leg]);
-      in.rolling_shift_H[leg] = 0.5 * foot.stance_travel(legs[leg], motion).head<2>();
-    }
-  }
-  trace.footholds = foothold_planner.update(in);
-  if (trace.ground.stepped) {
-    for (Foothold& foothold : trace.footholds)
-      foothold = ground.adapted(foothold, foot.centre_offset());
-  }
-
-  ComPlannerInput com;
-  com.gait = trace.gait;
-  com.reference = trace.path.p_WG;
-  com.com = state.p_WG.head<2>();
-  for (const Leg leg : kLegs) {
-    com.contact[leg] = trace.contacts[leg].p_WC.head<2>();
-    com.lift_off[leg] = p_WF_liftoff[leg].head<2>();
-    com.next_foothold[leg] = trace.footholds[leg].p_WC.head<2>();
-    com.touching[leg] = trace.contacts[leg].in_contact;
-  }
-  const ComTarget target = com_planner.update(com, dt);
-  trace.com_plan = target.plan;
-  trace.psp_weight = target.weight;
-
-  HorizonInput horizon;
-  horizon.path = trace.path;
-  horizon.twist = trace.twist;
-  horizon.com_plan = trace.com_plan;
-  horizon.plane = trace.plane;
-  horizon.p_WG = com.com;
-  horizon.yaw = state.rpy.yaw;
-  horizon.com_height = com_height_above_plane();
-  horizon.max_lead = config.path.reference == PathReferenceMode::kIntegrated
-                         ? config.path.max_integrated_lead
-                         : config.path.max_position_lead;
-  trace.reference = body_reference(horizon);
-
-  for (const Leg leg : kLegs) {
-    const LegPhase& phase = trace.gait.leg[leg];
-    if (trace.contacts[leg].in_contact) {
-      trace.swing[leg] = {state.p_WF[leg], trace.contacts[leg].v_WF_rolling_W, Vec3::Zero()};
-      continue;
-    }
-    trace.swing[leg] = swing_target({p_WF_liftoff[leg], trace.footholds[leg].p_WF, phase.progress,
-                                     phase.duration, swing_height()});
-  }
+  in.com_height = com_height;
+  in.max_lead = config.path.reference == PathReferenceMode::kIntegrated
+                    ? config.path.max_integrated_lead
+                    : config.path.max_position_lead;
+  return body_reference(in);
 }
 
-MpcInput SpinController::Impl::mpc_input() const {
-  const RobotState& state = trace.state;
-  MpcInput in;
-  const double stride = trace.gait.stance_duration + trace.gait.swing_duration;
-  in.dt = config.mpc.step_share * (trace.gait.walking ? stride : config.gait.period);
-  in.n_W = trace.contacts[Leg::kFR].n_W;
-  in.now.rpy = Vec3(state.rpy.roll, state.rpy.pitch, state.rpy.yaw);
-  in.now.p_WG = state.p_WG;
-  in.now.v_WG_W = state.v_WG_W;
-  in.now.w_WB_W = state.w_WB_W();
-  const double height = com_height_above_plane();
-  for (int k = 0; k < config.mpc.horizon; ++k) {
-    MpcStep& step = in.steps[static_cast<size_t>(k)];
-    const double middle = (k + 0.5) * in.dt;
-    const BodyMotion mid = reference_after(trace.reference, trace.plane, height, middle);
-    step.reference = reference_after(trace.reference, trace.plane, height, (k + 1) * in.dt);
-    step.rpy_mid = {mid.rpy.x(), mid.rpy.y(), mid.rpy.z()};
-    step.p_WG_mid = mid.p_WG;
-    for (const Leg leg : kLegs) {
-      const LegPhase ahead = clock.phase_at(leg, middle);
-      const bool same_stance =
-          trace.contacts[leg].in_contact && ahead.stride == trace.gait.leg[leg].stride;
-      step.stance[leg] = k == 0 ? trace.contacts[leg].in_contact : ahead.stance;
-      step.p_WC[leg] = same_stance ? trace.contacts[leg].p_WC : trace.footholds[leg].p_WC;
-    }
-  }
-  return in;
-}
-
-void SpinController::Impl::solve_mpc() {
-  PerLeg<bool> contacts{};
-  bool changed = false;
-  for (const Leg leg : kLegs) {
-    contacts[leg] = trace.contacts[leg].in_contact;
-    changed = changed || contacts[leg] != solved_contacts[leg];
-  }
-  timing.mpc_us = 0.0;
-  if (ticks_until_mpc-- > 0 && !changed) {
-    trace.mpc = last_forces;
-    return;
-  }
-  ticks_until_mpc = config.mpc.ticks_per_solve - 1;
-  solved_contacts = contacts;
-  const auto begin = Clock::now();
-  const ContactForces forces = mpc.update(mpc_input());
-  timing.mpc_us = microseconds_since(begin);
-  if (forces.status == SolveStatus::kFailed) {
-    ++mpc_failures;
-    last_forces.status = SolveStatus::kHeld;
-  } else {
-    mpc_failures = 0;
-    last_forces = forces;
-  }
-  trace.mpc = last_forces;
-}
-
-void SpinController::Impl::solve_whole_body(double dt) {
-  const auto begin = Clock::now();
-  WbcInput in;
-  in.state = trace.state;
-  in.reference = trace.reference;
-  in.swing = trace.swing;
-  in.contacts = trace.contacts;
-  in.mpc = trace.mpc;
-  in.contact_radius = localization.foot().radius();
-  in.n_W = trace.contacts[Leg::kFR].n_W;
-  const WbcOutput out = wbc.update(in, model);
-  timing.wbc_us = microseconds_since(begin);
-
-  trace.wbc = out.forces;
-  if (out.forces.status == SolveStatus::kFailed) {
-    // The previous command stands for this tick.
-    ++wbc_failures;
-    trace.wbc.status = SolveStatus::kHeld;
-    return;
-  }
-  wbc_failures = 0;
-  JointCommand raw;
-  for (const Leg leg : kLegs) {
-    const bool stance = trace.contacts[leg].in_contact;
-    LegCommand& c = raw[leg];
-    c.q = out.q[leg];
-    c.dq = out.dq[leg];
-    c.tau = out.tau[leg] + friction_torque(leg, out.dq[leg]);
-    c.kp.setConstant(stance ? config.joint.kp_stance : config.joint.kp_swing);
-    c.kd.setConstant(stance ? config.joint.kd_stance : config.joint.kd_swing);
-  }
-  if (!guard.update(raw, dt, trace.command)) stand_down(ControllerStatus::kBadCommand);
-}
-
-/// N m, to overcome the joints' own friction at the commanded rates, whose sign noise does not
-/// flip.
-Vec3 SpinController::Impl::friction_torque(Leg leg, const Vec3& dq) const {
-  constexpr double kSmoothRate = 0.05;  // rad/s
-  const LegGeometry& g = legs[leg];
-  const Vec3 direction = (dq / kSmoothRate).array().tanh();
-  return config.joint.friction_compensation *
-         (g.dry_friction.cwiseProduct(direction) + g.damping.cwiseProduct(dq));
-}
-
-bool SpinController::Impl::has_fallen() const {
-  const RobotState& state = trace.state;
-  const double tilt = std::acos(std::clamp(state.R_WB.col(2).dot(trace.plane.normal()), -1.0, 1.0));
-  const double height = state.p_WG.z() - trace.plane.height(state.p_WG.x(), state.p_WG.y());
-  return tilt > config.safety.max_tilt ||
-         height < config.safety.min_height_share * com_height_above_plane();
+bool SpinController::Impl::has_fallen(const RobotState& state, const TerrainPlane& plane) const {
+  const double tilt = std::acos(std::clamp(state.R_WB.col(2).dot(plane.normal()), -1.0, 1.0));
+  const double height = state.p_WG.z() - plane.height(state.p_WG.x(), state.p_WG.y());
+  return tilt > config.safety.max_tilt || height < config.safety.min_height_share * com_height;
 }
 
 void SpinController::Impl::stand_down(ControllerStatus why) {
-  trace.status = why;
-  trace.command = damped_stand_down(config.joint.kd_stand);
+  last.status = why;
+  last.command = damped_stand_down(config.joint.kd_stand);
+}
+
+const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
+                                               const MotionCommand& asked) noexcept {
+  if (is_stood_down(last.status)) return last.command;
+  if (!sensor_guard.update(reading, asked, last.command, last.gait.walking)) {
+    stand_down(ControllerStatus::kBadInput);
+    return last.command;
+  }
+  const auto& [sensors, command, encoder_stuck] = sensor_guard.input();
+  const double dt = tick_clock.update(sensors.time);
+  if (!started) start_from(sensors);
+
+  const auto [state, feet, creep, tilt_bias_H] =
+      localization.estimate({sensors, last.state, last.contacts, last.gait, last.plane, last.ground,
+                             last.wbc.f_W, last.command},
+                            model, dt);
+  const std::optional<double> last_path_yaw_rate =
+      motion_planner.follows_path() ? std::optional(last.path.yaw_rate) : std::nullopt;
+  const auto [gait, recovering] =
+      gait_timing.update({command, state.v_WG_W, last.reference.v_WG_W, last_path_yaw_rate,
+                          last.gait.walking, last.ground.stepped},
+                         dt);
+  const FootContacts contacts = localization.find_contacts(
+      {sensors.foot_contact, encoder_stuck, state, feet, gait, last.plane, last.ground});
+  const PerLeg<Vec3>& p_WF_liftoff = lift_off_points.update(contacts, state.p_WF);
+  const auto [plane, ground, remembered_treads] = ground_sense.update({contacts, gait, state}, dt);
+  const MotionPlan motion = motion_planner.update({command, state, sensors.aid}, dt);
+
+  const FootholdPlan footholds =
+      foot_planner.footholds({state, gait, recovering, motion.twist, plane, ground}, ground_sense);
+  const ComTarget com = com_planner.update(
+      com_planner_input(state, gait, contacts, p_WF_liftoff, footholds, motion.path), dt);
+  const BodyReference body = reference(motion, com.plan, plane, state);
+  const PerLeg<SwingTarget> swing =
+      foot_planner.swing_targets({state, gait, contacts, p_WF_liftoff, footholds, ground});
+
+  const ContactForces mpc =
+      force_planner.update({state, gait, gait_timing.clock(), contacts, plane, footholds, body});
+  const auto [wbc, joints, finite] =
+      joint_control.update({state, contacts, body, swing, mpc, last.command}, model, dt);
+
+  timing = {force_planner.solve_us(), joint_control.solve_us()};
+  last = {.sensors = sensors,
+          .encoder_stuck = encoder_stuck,
+          .status = gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding,
+          .state = state,
+          .feet = feet,
+          .contacts = contacts,
+          .plane = plane,
+          .ground = ground,
+          .remembered_treads = remembered_treads,
+          .creep = creep,
+          .tilt_bias_H = tilt_bias_H,
+          .aid_offset = motion.aid_offset,
+          .gait = gait,
+          .path = motion.path,
+          .twist = motion.twist,
+          .integral_H = motion.integral_H,
+          .footholds = footholds,
+          .com_plan = com.plan,
+          .psp_weight = com.weight,
+          .reference = body,
+          .swing = swing,
+          .mpc = mpc,
+          .wbc = wbc,
+          .command = joints};
+
+  if (!finite) stand_down(ControllerStatus::kBadCommand);
+  if (std::max(force_planner.failures(), joint_control.failures()) >
+      config.safety.max_solver_failures) {
+    stand_down(ControllerStatus::kSolverFailed);
+  }
+  if (has_fallen(state, plane)) stand_down(ControllerStatus::kFallen);
+  return last.command;
 }
 
 Result<SpinController> SpinController::create(const ControllerConfig& config,
@@ -421,46 +274,19 @@ SpinController::~SpinController() = default;
 
 void SpinController::reset(const BasePose& start) { impl_->reset(start); }
 void SpinController::follow(std::optional<Path> path) {
-  impl_->path_reference.follow(std::move(path));
+  impl_->motion_planner.follow(std::move(path));
 }
-ControllerStatus SpinController::status() const noexcept { return impl_->trace.status; }
-const RobotState* SpinController::estimate() const noexcept { return &impl_->trace.state; }
+ControllerStatus SpinController::status() const noexcept { return impl_->last.status; }
+const RobotState* SpinController::estimate() const noexcept { return &impl_->last.state; }
 std::optional<double> SpinController::path_progress() const noexcept {
-  return impl_->trace.path.arc_length;
+  return impl_->last.path.arc_length;
 }
-const TickTrace& SpinController::trace() const { return impl_->trace; }
+const TickTrace& SpinController::trace() const { return impl_->last; }
 const TickTiming& SpinController::timing() const { return impl_->timing; }
 
 const JointCommand& SpinController::tick(const SensorReading& sensors,
                                          const MotionCommand& command) noexcept {
-  Impl& s = *impl_;
-  TickTrace& t = s.trace;
-  if (is_stood_down(t.status)) return t.command;
-  if (!s.sensor_guard.update(sensors, command, t.command, t.gait.walking)) {
-    s.stand_down(ControllerStatus::kBadInput);
-    return t.command;
-  }
-  const GuardedInput& in = s.sensor_guard.input();
-  const double dt = s.measured_period(in.sensors);
-  if (!s.started) s.start_from_first_reading();
-  t.sensors = in.sensors;
-  t.encoder_stuck = in.encoder_stuck;
-
-  s.localization.estimate(s.model, dt, t);
-  s.set_gait(in.command, dt);
-  s.localization.find_contacts(t);
-  s.follow_contacts();
-  s.ground.update(dt, t);
-  s.plan_body(in.command, dt);
-  s.plan_feet(dt);
-  s.solve_mpc();
-  s.solve_whole_body(dt);
-
-  if (std::max(s.mpc_failures, s.wbc_failures) > s.config.safety.max_solver_failures) {
-    s.stand_down(ControllerStatus::kSolverFailed);
-  }
-  if (s.has_fallen()) s.stand_down(ControllerStatus::kFallen);
-  return t.command;
+  return impl_->tick(sensors, command);
 }
 
 }  // namespace pirouette

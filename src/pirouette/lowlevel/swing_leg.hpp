@@ -1,7 +1,7 @@
 // Swing trajectory of a foot.
 #pragma once
 
-#include "pirouette/types/tick_trace.hpp"
+#include "pirouette/types/swing_target.hpp"
 
 namespace pirouette {
 

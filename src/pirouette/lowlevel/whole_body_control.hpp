@@ -7,7 +7,7 @@
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/contact_forces.hpp"
 #include "pirouette/types/foot_contacts.hpp"
-#include "pirouette/types/tick_trace.hpp"
+#include "pirouette/types/swing_target.hpp"
 
 namespace pirouette {
 

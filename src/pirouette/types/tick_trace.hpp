@@ -15,17 +15,13 @@
 #include "pirouette/types/motion_command.hpp"
 #include "pirouette/types/robot_state.hpp"
 #include "pirouette/types/sensor_reading.hpp"
+#include "pirouette/types/swing_target.hpp"
 #include "pirouette/types/terrain_plane.hpp"
 
 namespace pirouette {
 
-/// Desired motion of a swing foot's sphere centre, world axes.
-struct SwingTarget {
-  Vec3 p_WF = Vec3::Zero();    ///< m
-  Vec3 v_WF_W = Vec3::Zero();  ///< m/s
-  Vec3 a_WF_W = Vec3::Zero();  ///< m/s^2
-};
-
+/// What is kept of a tick when it is over. It is no bus: within a tick a step takes `last_...`
+/// values from the tick before and this tick's own values from the steps before it.
 struct TickTrace {
   SensorReading sensors;
   PerLeg<bool> encoder_stuck{};  ///< what the leg's encoders say is not believed

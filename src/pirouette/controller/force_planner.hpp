@@ -1,0 +1,61 @@
+// When the MPC is solved, from what, and what holds in between.
+#pragma once
+
+#include "pirouette/gait/gait_clock.hpp"
+#include "pirouette/lowlevel/convex_mpc.hpp"
+#include "pirouette/lowlevel/mpc_config.hpp"
+#include "pirouette/types/body_reference.hpp"
+#include "pirouette/types/contact_forces.hpp"
+#include "pirouette/types/foot_contacts.hpp"
+#include "pirouette/types/foothold_plan.hpp"
+#include "pirouette/types/gait_phase.hpp"
+#include "pirouette/types/robot_state.hpp"
+#include "pirouette/types/terrain_plane.hpp"
+
+namespace pirouette {
+
+/// All of this tick.
+struct ForcePlannerInput {
+  const RobotState& state;
+  const GaitPhase& gait;
+  const GaitClock& clock;  ///< foresees the stances of the horizon
+  const FootContacts& contacts;
+  const TerrainPlane& plane;
+  const FootholdPlan& footholds;
+  const BodyReference& reference;
+};
+
+/// Solves every mpc.ticks_per_solve ticks and whenever the contact set changes.
+class ForcePlanner {
+ public:
+  /// `standing_period` (s) stands in for the stride's while the robot does not walk; `com_height`
+  /// in m above the plane.
+  ForcePlanner(const MpcConfig& config, double standing_period, double com_height, double mass,
+               const Mat3& inertia_B)
+      : config_(config),
+        standing_period_(standing_period),
+        com_height_(com_height),
+        mpc_(config, mass, inertia_B) {}
+
+  /// Forces of the last solution that worked; kHeld since one has not.
+  ContactForces update(const ForcePlannerInput& in) noexcept;
+
+  int failures() const { return failures_; }     ///< in a row
+  double solve_us() const { return solve_us_; }  ///< us, of the last update; 0: it did not solve
+  void reset() noexcept;
+
+ private:
+  MpcInput mpc_input(const ForcePlannerInput& in) const noexcept;
+
+  MpcConfig config_;
+  double standing_period_;
+  double com_height_;
+  ConvexMpc mpc_;
+  int failures_ = 0;
+  int ticks_until_solve_ = 0;
+  PerLeg<bool> solved_contacts_{};  ///< contact set of the last solution
+  ContactForces forces_;
+  double solve_us_ = 0.0;
+};
+
+}  // namespace pirouette

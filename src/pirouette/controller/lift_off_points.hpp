@@ -1,0 +1,34 @@
+// Where each foot last left the ground.
+#pragma once
+
+#include "pirouette/base/legs.hpp"
+#include "pirouette/base/math.hpp"
+#include "pirouette/types/foot_contacts.hpp"
+
+namespace pirouette {
+
+class LiftOffPoints {
+ public:
+  /// m, sphere centres `p_WF` as they were when each foot last left the ground; see start() for a
+  /// foot that has not.
+  const PerLeg<Vec3>& update(const FootContacts& contacts, const PerLeg<Vec3>& p_WF) noexcept {
+    for (const Leg leg : kLegs) {
+      const bool in_contact = contacts[leg].in_contact;
+      if (was_in_contact_[leg] && !in_contact) p_WF_[leg] = p_WF[leg];
+      was_in_contact_[leg] = in_contact;
+    }
+    return p_WF_;
+  }
+
+  /// Forgets all contacts; `p_WF` (m) stand in for feet that have not left the ground yet.
+  void start(const PerLeg<Vec3>& p_WF) noexcept {
+    was_in_contact_ = {};
+    p_WF_ = p_WF;
+  }
+
+ private:
+  PerLeg<bool> was_in_contact_{};
+  PerLeg<Vec3> p_WF_{};
+};
+
+}  // namespace pirouette

@@ -1,0 +1,31 @@
+// The time between readings.
+#pragma once
+
+#include <algorithm>
+#include <optional>
+
+namespace pirouette {
+
+/// Measures the period from the readings' own times. A reading that is early, late or stamped
+/// wrongly counts as half to ten nominal periods.
+class TickClock {
+ public:
+  /// `nominal_period` in s.
+  explicit TickClock(double nominal_period) : nominal_(nominal_period) {}
+
+  /// s, from the reading before to this one of `time` (s); nominal for the first.
+  double update(double time) noexcept {
+    const double period =
+        last_time_ ? std::clamp(time - *last_time_, 0.5 * nominal_, 10.0 * nominal_) : nominal_;
+    last_time_ = time;
+    return period;
+  }
+
+  void reset() noexcept { last_time_.reset(); }
+
+ private:
+  double nominal_;
+  std::optional<double> last_time_;  ///< s
+};
+
+}  // namespace pirouette
