@@ -167,6 +167,13 @@ config: build  ## config/default.toml and docs/parameters.md from src/pirouette/
 	@cp $(BUILD)/default.toml config/
 	@cp $(BUILD)/parameters.md docs/
 
+.PHONY: docs
+docs:  ## API reference and guides as one static site, build/docs/html; a warning fails it
+	@bash scripts/system_packages.sh doxygen
+	@rm -rf build/docs && mkdir -p build/docs
+	@doxygen docs/Doxyfile
+	@echo 'docs: build/docs/html/index.html'
+
 .PHONY: install
 install: setup  ## program, libraries and data to PREFIX=/usr/local
 	@$(CONFIGURE) -DCMAKE_INSTALL_PREFIX=$(abspath $(PREFIX)) > /dev/null
