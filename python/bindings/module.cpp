@@ -13,6 +13,7 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/toml.hpp"
+#include "pirouette/metrics/metrics.hpp"
 #include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::python {
@@ -75,6 +76,42 @@ std::string run(const Config& config, const std::string& trace) {
   return to_json(trial.value().metrics);
 }
 
+/// Copies an array of `n` numbers; None: no list.
+std::vector<double> numbers(const nb::object& given, const char* name, std::size_t n) {
+  if (given.is_none()) return {};
+  const InputArray array = as_array(given, name, {n});
+  return {array.data(), array.data() + n};
+}
+
+std::vector<Vec2> points(const nb::object& given, const char* name, std::size_t n) {
+  const InputArray array = as_array(given, name, {n, 2});
+  std::vector<Vec2> out;
+  out.reserve(n);
+  for (std::size_t i = 0; i < n; ++i)
+    out.emplace_back(array.data()[2 * i], array.data()[2 * i + 1]);
+  return out;
+}
+
+/// The text of metrics.json of somebody else's run, sampled at `rate` (Hz).
+std::string metrics(double rate, const nb::object& time, const nb::object& com,
+                    const nb::object& com_velocity, const nb::object& yaw, const nb::object& roll,
+                    const nb::object& pitch, const nb::object& point, const nb::object& velocity,
+                    double yaw_rate) {
+  const std::size_t n = nb::len(time);
+  MotionRecord record;
+  record.time = numbers(time, "time", n);
+  record.p_WG = points(com, "com", n);
+  record.v_WG_W = points(com_velocity, "com_velocity", n);
+  record.yaw = numbers(yaw, "yaw", n);
+  record.roll = numbers(roll, "roll", n);
+  record.pitch = numbers(pitch, "pitch", n);
+  CommandedMotion commanded;
+  commanded.point = Eigen::Map<const Vec2>(as_array(point, "point", {2}).data());
+  commanded.v_H = Eigen::Map<const Vec2>(as_array(velocity, "velocity", {2}).data());
+  commanded.yaw_rate = yaw_rate;
+  return to_json(evaluate(record, commanded, rate));
+}
+
 }  // namespace
 }  // namespace pirouette::python
 
@@ -95,6 +132,9 @@ NB_MODULE(_core, module) {
   module.def("known_controllers", &known_controllers, "Names of the controller bundles.");
   module.def("run_trial", &python::run, "config"_a, "trace"_a,
              "Simulates one run; writes the trace to a file, returns metrics.json.");
+  module.def("metrics", &python::metrics, "rate"_a, "time"_a, "com"_a, "com_velocity"_a, "yaw"_a,
+             nb::arg("roll").none(), nb::arg("pitch").none(), "point"_a, "velocity"_a, "yaw_rate"_a,
+             "metrics.json of a motion that was recorded elsewhere.");
   python::define_values(module);
   python::define_loops(module);
 }

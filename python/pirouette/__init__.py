@@ -21,6 +21,7 @@ if TYPE_CHECKING:
         Result,
         SensorReading,
         Simulation,
+        metrics,
         run,
     )
 
@@ -36,6 +37,7 @@ __all__ = [
     "Result",
     "SensorReading",
     "Simulation",
+    "metrics",
     "run",
 ]
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Unpack
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from pirouette import _core
 from pirouette._core import (
@@ -18,6 +19,7 @@ from pirouette._core import (
     SensorReading,
 )
 from pirouette.configuration import ConfigLike, Options, as_dict, resolve
+from pirouette.errors import Error
 
 __all__ = [
     "BaseTruth",
@@ -29,6 +31,7 @@ __all__ = [
     "Result",
     "SensorReading",
     "Simulation",
+    "metrics",
     "run",
 ]
 
@@ -67,6 +70,61 @@ def run(config: ConfigLike = None, **options: Unpack[Options]) -> Result:
         metrics = _core.run_trial(resolved, str(file))
         trace = np.load(file)
     return Result(as_dict(resolved), json.loads(metrics), trace)
+
+
+def metrics(
+    time: ArrayLike,
+    com: ArrayLike,
+    yaw: ArrayLike,
+    *,
+    yaw_rate: float,
+    point: ArrayLike | None = None,
+    velocity: ArrayLike = (0.0, 0.0),
+    roll: ArrayLike | None = None,
+    pitch: ArrayLike | None = None,
+) -> dict[str, Any]:
+    """How well a robot turned, in any simulator and under any controller, by the definitions of
+    metrics.json.
+
+    time: s, shape (n,), evenly spaced, n >= 2; com: m, shape (n, 2) or (n, 3), the true centre of
+    mass in the world; yaw, roll, pitch: rad, shape (n,), true, yaw wrapped or not. What was
+    commanded: yaw_rate in rad/s; velocity in m/s, heading axes; point in m, absent: where com
+    begins. Give the part to be measured only, without standing and settling. The keys are those of
+    `pirouette config metrics` that this motion can tell. Raises Error for other shapes and for
+    times that are not evenly spaced.
+    """
+    seconds = np.asarray(time, dtype=float)
+    place = np.asarray(com, dtype=float)
+    if seconds.ndim != 1 or len(seconds) < 2:
+        raise Error(f"time: given shape {seconds.shape}; allowed: (n,) with n of 2 and more")
+    steps = np.diff(seconds)
+    if not (np.all(steps > 0.0) and np.allclose(steps, steps.mean(), rtol=1e-3)):
+        raise Error("time: the steps differ; allowed: evenly spaced, increasing times")
+    if place.ndim != 2 or place.shape[0] != len(seconds) or place.shape[1] not in (2, 3):
+        raise Error(f"com: given shape {place.shape}; allowed: ({len(seconds)}, 2) or (..., 3)")
+    place = np.ascontiguousarray(place[:, :2])
+    text = _core.metrics(
+        1.0 / steps.mean(),
+        seconds,
+        place,
+        np.gradient(place, seconds, axis=0),
+        np.unwrap(np.asarray(yaw, dtype=float)),
+        roll,
+        pitch,
+        place[0] if point is None else point,
+        velocity,
+        yaw_rate,
+    )
+    known = _drop_absent(json.loads(text))
+    for key in ("context", "timing", "fell"):  # of a run of ours
+        known.pop(key, None)
+    return known
+
+
+def _drop_absent(values: dict[str, Any]) -> dict[str, Any]:
+    """Without the entries that are None and the groups that are empty then."""
+    inner = {k: _drop_absent(v) if isinstance(v, dict) else v for k, v in values.items()}
+    return {key: value for key, value in inner.items() if value is not None and value != {}}
 
 
 class Controller(_core.Controller):

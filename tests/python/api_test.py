@@ -165,6 +165,41 @@ def test_the_ground_is_the_terrains():
     )
 
 
+def test_metrics_of_a_trace_are_those_of_its_run():
+    run = pirouette.run(turns=2, set={"run.trace_rate": 500.0})
+    recorded = run.trace[
+        run.trace["time"] >= run.metrics["context"]["duration_s"] - 2 * 2 * np.pi / 0.7
+    ]
+    measured = pirouette.metrics(
+        recorded["time"],
+        recorded["true_com_position"],
+        recorded["true_rpy"][:, 2] % (2 * np.pi),
+        yaw_rate=0.7,
+        point=[run.metrics["context"]["point_x"], run.metrics["context"]["point_y"]],
+        roll=recorded["true_rpy"][:, 0],
+    )
+    for key in ("radius_mean_mm", "distance_to_point_max_mm", "drift_per_turn_mm"):
+        assert measured["com"][key] == pytest.approx(run.metrics["com"][key], rel=1e-2), key
+    assert measured["attitude"]["roll_mean"] == pytest.approx(
+        run.metrics["attitude"]["roll_mean"], rel=1e-2
+    )
+    assert "estimator" not in measured
+
+
+def test_metrics_of_a_circle_are_its_own():
+    time = np.arange(0.0, 20.0, 0.01)
+    yaw = np.pi * time
+    com = 0.02 * np.stack([np.cos(yaw), np.sin(yaw)], axis=1)
+    measured = pirouette.metrics(time, com, yaw, yaw_rate=np.pi, point=[0.0, 0.0])
+    assert measured["com"]["radius_mean_mm"] == pytest.approx(20.0, abs=0.01)
+    assert measured["com"]["distance_to_point_max_mm"] == pytest.approx(20.0, abs=0.01)
+    assert measured["turns_done"] == pytest.approx(10.0, abs=0.01)
+    with pytest.raises(pirouette.Error, match="time"):
+        pirouette.metrics(time[::-1], com, yaw, yaw_rate=1.0)
+    with pytest.raises(pirouette.Error, match="com"):
+        pirouette.metrics(time, com[:5], yaw, yaw_rate=1.0)
+
+
 def test_readings_are_arrays_of_their_own_memory():
     reading = pirouette.SensorReading()
     reading.joint_position[2, 1] = 0.5

@@ -122,6 +122,7 @@ AttitudeMetrics evaluate_attitude(const MotionRecord& record, double rate) {
 
 EstimatorMetrics evaluate_estimator(const MotionRecord& record) {
   EstimatorMetrics out;
+  if (record.position_error.empty()) return out;
   out.position_error_mm =
       scaled(mean(distances(record.position_error, Vec2::Zero())), kMillimetres);
   out.yaw_error_rad = mean(record.yaw_error);

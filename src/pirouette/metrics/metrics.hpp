@@ -30,7 +30,9 @@ struct CommandedMotion {
   std::optional<Path> path = {};  ///< in the world, from where the command came; absent: a spin
 };
 
-/// The recorded part of a run: one entry per control tick in every list but `slip`.
+/// The recorded part of a run: one entry per control tick in every list but `slip`. A list of what
+/// is not known may stay empty: the metrics that need it are then absent. time, p_WG, v_WG_W and
+/// yaw are always needed.
 struct MotionRecord {
   std::vector<double> time;            ///< s
   std::vector<Vec2> p_WG;              ///< m, true CoM
