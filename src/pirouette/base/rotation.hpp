@@ -83,6 +83,13 @@ class YawUnwrapper {
   void reset(double yaw) { unwrapped_ = yaw; }
   double value() const { return unwrapped_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [unwrapped] = self;
+    visit(unwrapped);
+  }
+
  private:
   double unwrapped_ = 0.0;
 };

@@ -62,6 +62,13 @@ class CentreOfMassPlanner {
   ComTarget update(const ComPlannerInput& in, double dt) noexcept;
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, started, vertices, offset] = self;
+    visit(started, vertices, offset);
+  }
+
  private:
   /// A foot as the planner sees it: (weight, x, y). Where the real contact is early or late, weight
   /// and position jump; the jump fades away instead.

@@ -21,6 +21,13 @@ class CommandGuard {
   /// The next update starts from `measured` joint angles and no torque.
   void reset(const PerLeg<Vec3>& measured) noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, legs, tau, q] = self;
+    visit(tau, q);
+  }
+
  private:
   JointConfig config_;
   PerLeg<LegGeometry> legs_;

@@ -24,6 +24,13 @@ class ContactDebounce {
 
   void reset() noexcept { *this = ContactDebounce(ticks_); }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [ticks, flag, changed_for] = self;
+    visit(flag, changed_for);
+  }
+
  private:
   int ticks_;
   bool flag_ = false;

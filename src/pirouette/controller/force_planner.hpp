@@ -44,6 +44,14 @@ class ForcePlanner {
   double solve_us() const { return solve_us_; }  ///< us, of the last update; 0: it did not solve
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, standing_period, com_height, mpc, failures, ticks_until_solve, solved_contacts,
+           forces, solve_us] = self;
+    visit(failures, ticks_until_solve, solved_contacts, forces);
+  }
+
  private:
   MpcInput mpc_input(const ForcePlannerInput& in) const noexcept;
 

@@ -38,6 +38,13 @@ class GaitTiming {
 
   const GaitClock& clock() const { return clock_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, push_recovery, clock] = self;
+    visit(push_recovery, clock);
+  }
+
  private:
   GaitConfig config_;
   PushRecovery push_recovery_;

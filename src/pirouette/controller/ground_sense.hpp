@@ -38,6 +38,13 @@ class GroundSense {
   /// height of its tread. `centre_offset` (m) is the sphere centre's height above the contact.
   Foothold adapted(const Foothold& planned, double centre_offset) const noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, foot_radius, plane_estimator, classifier, memory, remembered_stride] = self;
+    visit(plane_estimator, classifier, memory, remembered_stride);
+  }
+
  private:
   void remember_footholds(const GroundSenseInput& in) noexcept;
 

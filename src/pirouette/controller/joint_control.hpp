@@ -52,6 +52,13 @@ class JointControl {
   int failures() const { return failures_; }     ///< of the whole-body QP, in a row
   double solve_us() const { return solve_us_; }  ///< us, of the last update
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, legs, foot_radius, wbc, guard, failures, solve_us] = self;
+    visit(guard, failures);
+  }
+
  private:
   JointConfig config_;
   PerLeg<LegGeometry> legs_;

@@ -26,6 +26,13 @@ class LiftOffPoints {
     p_WF_ = p_WF;
   }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [was_in_contact, p_WF] = self;
+    visit(was_in_contact, p_WF);
+  }
+
  private:
   PerLeg<bool> was_in_contact_{};
   PerLeg<Vec3> p_WF_{};

@@ -67,6 +67,14 @@ class Localization {
 
   const RollingFoot& foot() const { return foot_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, legs, foot, attitude_filter, odometry_filter, creep, tilt_bias, yaw,
+           landed_early, flags] = self;
+    visit(attitude_filter, odometry_filter, creep, tilt_bias, yaw, landed_early, flags);
+  }
+
  private:
   /// The trunk's motion as this tick knows it.
   struct Trunk {

@@ -41,6 +41,13 @@ class MotionPlanner {
   /// The path stays.
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [aid_offset, path_reference, tracker] = self;
+    visit(aid_offset, path_reference, tracker);
+  }
+
  private:
   PositionAidOffset aid_offset_;
   PathReference path_reference_;

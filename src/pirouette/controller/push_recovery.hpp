@@ -22,6 +22,13 @@ class PushRecovery {
 
   void reset() noexcept { time_left_ = 0.0; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, time_left] = self;
+    visit(time_left);
+  }
+
  private:
   GaitConfig config_;
   double time_left_ = 0.0;  ///< s

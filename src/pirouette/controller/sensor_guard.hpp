@@ -32,6 +32,14 @@ class SensorGuard {
   /// Inputs to work with; good after an update that returned true.
   const GuardedInput& input() const { return input_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, period, input, last_raw, started, bad_inputs, outliers, repeated_samples,
+           blind_travel] = self;
+    visit(input, last_raw, started, bad_inputs, outliers, repeated_samples, blind_travel);
+  }
+
  private:
   void watch_imu(const SensorReading& sensors, bool walking) noexcept;
   void watch_encoders(const SensorReading& sensors, const JointCommand& sent) noexcept;

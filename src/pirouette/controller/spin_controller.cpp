@@ -1,5 +1,10 @@
 #include "pirouette/controller/spin_controller.hpp"
 
+#include <cstdint>
+#include <cstring>
+
+#include "pirouette/base/fingerprint.hpp"
+#include "pirouette/base/memory.hpp"
 #include "pirouette/com/com_planner.hpp"
 #include "pirouette/controller/body_horizon.hpp"
 #include "pirouette/controller/command_guard.hpp"
@@ -76,6 +81,16 @@ ComPlannerInput com_planner_input(const RobotState& state, const GaitPhase& gait
   return in;
 }
 
+/// Counts up when what a snapshot holds changes without a change of its size.
+constexpr std::uint64_t kSnapshotVersion = 1;
+constexpr std::size_t kHeaderSize = 2 * sizeof(std::uint64_t);  ///< version and checksum
+
+std::uint64_t checksum(std::span<const std::byte> content) {
+  Fingerprint sum;
+  sum.add({reinterpret_cast<const char*>(content.data()), content.size()});
+  return sum.value();
+}
+
 }  // namespace
 
 /// The stages, and what is kept of the last tick. A tick reads `last` only as `last_...` of a
@@ -102,6 +117,18 @@ struct SpinController::Impl {
   void reset(const BasePose& pose);
   void start_from(const SensorReading& first);
   const JointCommand& tick(const SensorReading& sensors, const MotionCommand& command) noexcept;
+
+  std::vector<std::byte> snapshot() const;
+  bool restore(std::span<const std::byte> snapshot);
+
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [configuration, robot, height, nominal, clock, guard, localization_, timing_, lift_off,
+           ground, motion, feet, com, forces, joints, start_, started_, last_, cost] = self;
+    visit(clock, guard, localization_, timing_, lift_off, ground, motion, com, forces, joints,
+          start_, started_, last_);
+  }
 
   BodyReference reference(const MotionPlan& motion, const ComPlan& com_plan,
                           const TerrainPlane& plane, const RobotState& state) const;
@@ -260,6 +287,35 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
   return last.command;
 }
 
+std::vector<std::byte> SpinController::Impl::snapshot() const {
+  std::vector<std::byte> out;
+  MemoryWriter write(out);
+  write(kSnapshotVersion, std::uint64_t{0});
+  memory(*this, write);
+  const std::uint64_t sum = checksum(std::span<const std::byte>(out).subspan(kHeaderSize));
+  std::memcpy(out.data() + sizeof kSnapshotVersion, &sum, sizeof sum);
+  return out;
+}
+
+bool SpinController::Impl::restore(std::span<const std::byte> snapshot) {
+  if (snapshot.size() < kHeaderSize) return false;
+  std::uint64_t version = 0, sum = 0;
+  MemoryReader header(snapshot.first(kHeaderSize));
+  header(version, sum);
+  const std::span<const std::byte> content = snapshot.subspan(kHeaderSize);
+  if (version != kSnapshotVersion || sum != checksum(content)) return false;
+
+  std::vector<std::byte> before;
+  MemoryWriter keep(before);
+  memory(*this, keep);
+  MemoryReader read(content);
+  memory(*this, read);
+  if (read.complete()) return true;
+  MemoryReader back(before);
+  memory(*this, back);
+  return false;
+}
+
 Result<SpinController> SpinController::create(const ControllerConfig& config,
                                               const std::string& mjcf) {
   Result<RobotModel> model = RobotModel::load(mjcf);
@@ -275,6 +331,10 @@ SpinController::~SpinController() = default;
 void SpinController::reset(const BasePose& start) { impl_->reset(start); }
 void SpinController::follow(std::optional<Path> path) {
   impl_->motion_planner.follow(std::move(path));
+}
+std::vector<std::byte> SpinController::snapshot() const { return impl_->snapshot(); }
+bool SpinController::restore(std::span<const std::byte> snapshot) {
+  return impl_->restore(snapshot);
 }
 ControllerStatus SpinController::status() const noexcept { return impl_->last.status; }
 const RobotState* SpinController::estimate() const noexcept { return &impl_->last.state; }

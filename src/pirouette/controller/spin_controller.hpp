@@ -1,9 +1,12 @@
 // The whole controller: sensor readings and a motion command in, joint commands out.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include "pirouette/base/result.hpp"
 #include "pirouette/controller/controller.hpp"
@@ -37,6 +40,14 @@ class SpinController final : public Controller {
   /// (is_stood_down) every further command is the damped stand-down until reset().
   const JointCommand& tick(const SensorReading& sensors,
                            const MotionCommand& command) noexcept override;
+
+  /// Everything that coming ticks depend on besides their arguments, configuration and robot: the
+  /// stages' memory, the path, trace(). In the machine's own byte order.
+  std::vector<std::byte> snapshot() const override;
+
+  /// Goes on bit for bit as the controller did of which `snapshot` was taken, with the same
+  /// configuration and robot. False, and nothing has changed: it is damaged, or of another version.
+  bool restore(std::span<const std::byte> snapshot) override;
 
   ControllerStatus status() const noexcept override;
   const RobotState* estimate() const noexcept override;

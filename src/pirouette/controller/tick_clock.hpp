@@ -23,6 +23,13 @@ class TickClock {
 
   void reset() noexcept { last_time_.reset(); }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [nominal, last_time] = self;
+    visit(last_time);
+  }
+
  private:
   double nominal_;
   std::optional<double> last_time_;  ///< s

@@ -42,6 +42,13 @@ class AttitudeFilter {
   void reset(const Mat3& R_WB);
   const Vec3& gyro_bias() const { return gyro_bias_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, q_WB, gyro_bias, rest] = self;
+    visit(q_WB, gyro_bias, rest);
+  }
+
  private:
   EstimationConfig config_;
   Quat q_WB_ = Quat::Identity();

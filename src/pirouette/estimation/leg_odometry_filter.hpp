@@ -54,6 +54,13 @@ class LegOdometryFilter {
   const Covariance& horizontal_covariance() const { return P_horizontal_; }
   const Covariance& vertical_covariance() const { return P_vertical_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, x, P_horizontal, P_vertical] = self;
+    visit(x, P_horizontal, P_vertical);
+  }
+
  private:
   using StateByAxis = Eigen::Matrix<double, kStates, 3>;
 

@@ -31,6 +31,13 @@ class SpinCreep {
   CreepEstimate update(const CreepInput& in, double dt) noexcept;
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, mean_moment, mean_force] = self;
+    visit(mean_moment, mean_force);
+  }
+
  private:
   void observe(const CreepInput& in, double dt) noexcept;
   double coefficient(double force_share) const noexcept;

@@ -26,6 +26,13 @@ class TiltBias {
 
   void reset() noexcept { *this = TiltBias(averaging_time_); }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [averaging_time, mean_slope, mean_slope_H, mean_turn, weight] = self;
+    visit(mean_slope, mean_slope_H, mean_turn, weight);
+  }
+
  private:
   double averaging_time_;
   Vec2 mean_slope_ = Vec2::Zero();    ///< A

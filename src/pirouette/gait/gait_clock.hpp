@@ -34,6 +34,14 @@ class GaitClock {
   /// stance or swing as it was, and the rest of it goes by faster.
   void hurry() noexcept { period_ = std::min(period_, next_period_); }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [initial_period, initial_duty, period, next_period, next_duty, walking, stopping, cycle,
+           legs] = self;
+    visit(period, next_period, next_duty, walking, stopping, cycle, legs);
+  }
+
  private:
   struct LegState {
     double duty = 0.5;       ///< of the current stride

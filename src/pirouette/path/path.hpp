@@ -48,6 +48,8 @@ struct Spline {
 /// [Zhu21] Eq. (19), corrected: docs/equations.md#eq-19
 class Path {
  public:
+  /// The line from the origin along x.
+  Path() = default;
   static Path line(const Vec2& start, double heading);
   /// Signed `radius` (m), not 0: positive has its centre to the left.
   static Path circle(const Vec2& start, double heading, double radius);
@@ -71,6 +73,13 @@ class Path {
 
   double length() const noexcept;  ///< m, of one lap; infinite for a line
   bool closed() const noexcept;
+
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [shape] = self;
+    visit(shape);
+  }
 
  private:
   explicit Path(std::variant<Arc, Spline> shape) : shape_(std::move(shape)) {}

@@ -35,6 +35,15 @@ class PathReference {
   /// The next update anchors at the robot. The path stays.
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, path, arc_length, robot_arc_length, travel_direction, anchored, walking,
+           command_point, command_heading, twist, p_WG, yaw, yaw_gap_limit] = self;
+    visit(path, arc_length, robot_arc_length, travel_direction, anchored, walking, command_point,
+          command_heading, twist, p_WG, yaw, yaw_gap_limit);
+  }
+
  private:
   void anchor(const Vec2& p_WG, double yaw, const RobotState& state) noexcept;
   void anchor_when_due(const MotionCommand& command, const RobotState& state) noexcept;

@@ -23,6 +23,13 @@ class PositionAidOffset {
               double dt) noexcept;
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, history, recorded, offset, heard_for, silent_for, known] = self;
+    visit(history, recorded, offset, heard_for, silent_for, known);
+  }
+
  private:
   struct Past {
     double time = 0.0;

@@ -24,6 +24,14 @@ class Tracker {
   /// Current LQR gain: correction (vx, vy, yaw rate) per error (x, y, yaw), reference heading axes.
   const Mat3& gain() const { return gain_; }
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, control_period, gain_yaw_rate, gain, integral_H, correction_H,
+           yaw_rate_correction] = self;
+    visit(gain_yaw_rate, gain, integral_H, correction_H, yaw_rate_correction);
+  }
+
  private:
   void solve_gain(double yaw_rate) noexcept;
   void integrate(const Vec2& e_H, const Vec2& proportional_H, double dt) noexcept;

@@ -44,6 +44,14 @@ class FootholdMemory {
   std::size_t tread_count() const { return valid_ ? tread_count_ : 0; }
   void reset() noexcept;
 
+  /// See base/memory.hpp. Footholds that have been added, of which count() are left.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, footholds, added, plane, climb, sorted, treads, tread_count, valid] = self;
+    visit(added, plane, climb, treads, tread_count, valid);
+    for (std::size_t i = 0; i < self.count(); ++i) visit(footholds[i]);
+  }
+
  private:
   struct Sample {
     double along;  ///< m, uphill

@@ -24,10 +24,17 @@ class GroundClassifier {
   const GroundEstimate& estimate() const { return estimate_; }
   void reset() noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, recent, estimate] = self;
+    visit(recent, estimate);
+  }
+
  private:
   static constexpr std::size_t kPerLeg = 3;
   struct Recent {
-    std::array<Vec3, kPerLeg> p_WF;
+    std::array<Vec3, kPerLeg> p_WF = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< m
     std::size_t count = 0;  ///< footholds ever
   };
 

@@ -41,6 +41,13 @@ class PlaneEstimator {
   /// Forgets all contacts; the ground is `plane` until feet say otherwise.
   void reset(const TerrainPlane& plane) noexcept;
 
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [config, plane, contacts] = self;
+    visit(plane, contacts);
+  }
+
  private:
   struct Contact {
     Vec3 p_WC = Vec3::Zero();

@@ -21,6 +21,13 @@ struct MotionCommand {
   /// of v_H that of the path in the body; yaw_rate has no say. The body turns with the path, or
   /// else keeps its heading.
   bool hold_heading = false;
+
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [walk, v_H, yaw_rate, point, heading, hold_heading] = self;
+    visit(walk, v_H, yaw_rate, point, heading, hold_heading);
+  }
 };
 
 }  // namespace pirouette

@@ -39,6 +39,14 @@ struct SensorReading {
   std::optional<PerLeg<bool>> foot_contact;  ///< absent where the robot has no contact sensing
   std::optional<PositionAid> aid;            ///< present in the ticks in which one arrives
   std::optional<BaseTruth> truth;            ///< absent on a real robot
+
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [time, joint_position, joint_velocity, specific_force_B, w_WB_B, foot_contact, aid,
+           truth] = self;
+    visit(time, joint_position, joint_velocity, specific_force_B, w_WB_B, foot_contact, aid, truth);
+  }
 };
 
 }  // namespace pirouette

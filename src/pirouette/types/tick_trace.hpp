@@ -53,6 +53,17 @@ struct TickTrace {
   /// this list.
   template <class Visit>
   static void columns(const TickTrace& t, Visit&& visit);
+
+  /// See base/memory.hpp.
+  template <class Self, class Visit>
+  static void memory(Self& self, Visit&& visit) {
+    auto& [sensors, encoder_stuck, status, state, feet, contacts, plane, ground, remembered_treads,
+           creep, tilt_bias_H, aid_offset, gait, path, twist, integral_H, footholds, com_plan,
+           psp_weight, reference, swing, mpc, wbc, command] = self;
+    visit(sensors, encoder_stuck, status, state, feet, contacts, plane, ground, remembered_treads,
+          creep, tilt_bias_H, aid_offset, gait, path, twist, integral_H, footholds, com_plan,
+          psp_weight, reference, swing, mpc, wbc, command);
+  }
 };
 
 namespace detail {
