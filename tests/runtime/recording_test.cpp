@@ -18,12 +18,12 @@ Config noisy_config() {
   return config;
 }
 
-/// Two seconds of a spin, the first of them standing.
-Recording recorded_spin(const Config& config) {
+/// What the flight recorder kept of a spin, the first second of it standing.
+Recording recorded_spin(const Config& config, std::int64_t ticks = 1000) {
   test::ClosedLoop loop(config);
   const BaseTruth& start = loop.plant.truth().base;
   FlightRecorder recorder(loop.controller, {start.p_WB, start.R_WB}, test::kTick);
-  for (std::int64_t tick = 0; tick < 1000; ++tick) {
+  for (std::int64_t tick = 0; tick < ticks; ++tick) {
     const MotionCommand motion = tick < 500 ? test::stand_still() : test::spin(0.7);
     const SensorReading sensors = loop.plant.sense();
     const JointCommand& command = loop.tick(sensors, motion);
@@ -76,6 +76,17 @@ TEST(Recording, ReplaysToTheSameCommandsBitForBit) {
   EXPECT_FALSE(result.difference.has_value());
   EXPECT_EQ(result.ticks, 1000);
   EXPECT_EQ(result.status, ControllerStatus::kWalking);
+}
+
+TEST(Recording, OfALongRunReplaysFromTheSnapshotAtItsStart) {
+  const Config config = noisy_config();
+  const Recording recording = recorded_spin(config, 12000);
+  EXPECT_EQ(recording.start.first_tick, 5000);
+  EXPECT_FALSE(recording.start.snapshot.empty());
+  SpinController controller = test::make_controller(config);
+  const Replay result = replay(recording, controller).value();
+  EXPECT_FALSE(result.difference.has_value());
+  EXPECT_EQ(result.ticks, 7000);
 }
 
 TEST(Recording, NamesTheFirstTickAndColumnThatDiffer) {
