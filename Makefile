@@ -160,7 +160,7 @@ format: setup  ## format every file in place
 	@bash scripts/check_format.sh --fix
 
 .PHONY: config
-config: build  ## config/default.toml and docs/parameters.md from src/pirouette/config/config.hpp
+config: build  ## config/default.toml and docs/parameters.md from the fields of every *_config.hpp
 	@$(PIROUETTE) config dump > $(BUILD)/default.toml
 	@$(PIROUETTE) config doc > $(BUILD)/parameters.md
 	@mkdir -p docs
