@@ -7,6 +7,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "pirouette/config/config.hpp"
+
 namespace pirouette {
 namespace {
 

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "pirouette/config/config.hpp"
-
 namespace pirouette {
+
+struct Config;
 
 struct ParameterInfo {
   std::string key;      ///< dotted, such as gait.period

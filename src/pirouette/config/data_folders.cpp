@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <optional>
 
+#include "pirouette/config/config.hpp"
 #include "pirouette/config/suggest.hpp"
 
 namespace pirouette {

@@ -6,9 +6,10 @@
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
 
 namespace pirouette {
+
+struct Config;
 
 /// The folder that holds config/, experiments/ and robots/: the environment's PIROUETTE_DATA_DIR;
 /// of a program in the build tree the source tree; else share/pirouette beside the folder of the

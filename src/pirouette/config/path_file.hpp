@@ -6,7 +6,7 @@
 
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
+#include "pirouette/trial/trial_config.hpp"
 
 namespace pirouette {
 

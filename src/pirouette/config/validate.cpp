@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "pirouette/config/config.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/path_file.hpp"
 

@@ -2,9 +2,10 @@
 #pragma once
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
 
 namespace pirouette {
+
+struct Config;
 
 /// Relations between parameters, and the files of robot and path. Part of load_config; call it
 /// after changing a Config in code. Empty: all is well.
