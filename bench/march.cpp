@@ -1,12 +1,11 @@
 #include "march.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <optional>
 #include <stdexcept>
 
-#include "pirouette/base/rotation.hpp"
+#include "pirouette/base/stopwatch.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/plant.hpp"
@@ -17,17 +16,11 @@ namespace pirouette::bench {
 
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr int kRepetitions = 3;
 constexpr int kWarmUpTicks = 1500;
 constexpr int kTimedTicks = 20000;
 constexpr int kTicksBetweenPushes = 500;
 constexpr double kGoldenAngle = 2.39996;  // rad, so that pushes come from all sides
-
-double microseconds(Clock::duration d) {
-  return std::chrono::duration<double, std::micro>(d).count();
-}
 
 Config make_config(const Scenario& scenario) {
   Config config;
@@ -60,15 +53,15 @@ class TimedWorld final : public World {
   double period() const override { return plant_.period(); }
   std::optional<SensorReading> sense() override {
     push();
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     SensorReading reading = plant_.sense();
-    sense_us = microseconds(Clock::now() - begin);
+    sense_us = watch.microseconds();
     return reading;
   }
   void send(const JointCommand& command) override {
-    const auto begin = Clock::now();
+    const Stopwatch watch;
     plant_.advance(command);
-    send_us = microseconds(Clock::now() - begin);
+    send_us = watch.microseconds();
     ++tick_;
   }
   const PlantTruth* truth() const override { return &plant_.truth(); }

@@ -5,7 +5,6 @@
 // them.
 #pragma once
 
-#include <concepts>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -82,6 +81,14 @@ template <class T>
 const char* take_value(const char* from, PerLeg<T>& value) {
   for (T& leg : value) from = take_value(from, leg);
   return from;
+}
+
+/// Every column's bytes, appended to `out`.
+template <class Row>
+void append_row(std::vector<char>& out, const Row& row) {
+  Row::columns(row, [&](const char*, const char*, const char*, const auto& value) {
+    append_value(out, value);
+  });
 }
 
 /// Head of a file of `rows` rows like `row`. Its length does not depend on `rows`, so that it can

@@ -25,9 +25,7 @@ class NpyRowsFile {
   template <class Row>
   void append(const Row& row) {
     row_.clear();
-    Row::columns(row, [&](const char*, const char*, const char*, const auto& value) {
-      append_value(row_, value);
-    });
+    append_row(row_, row);
     stream_.write(row_.data(), static_cast<std::streamsize>(row_.size()));
     ++rows_;
   }
@@ -51,11 +49,9 @@ Result<std::vector<Row>> read_npy_rows(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return Error{path.string(), 0, "", "cannot be read"};
   const std::string text((std::istreambuf_iterator<char>(stream)), {});
+  const Row row;
   std::vector<char> example;
-  Row row;
-  Row::columns(row, [&](const char*, const char*, const char*, auto& value) {
-    append_value(example, value);
-  });
+  append_row(example, row);
   const std::size_t head = npy_rows_header(row, 0).size();
   const std::size_t rows = text.size() > head ? (text.size() - head) / example.size() : 0;
   const std::string expected = npy_rows_header(row, rows);

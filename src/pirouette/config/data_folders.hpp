@@ -12,8 +12,8 @@ namespace pirouette {
 struct Config;
 
 /// The folder that holds config/, experiments/ and robots/: the environment's PIROUETTE_DATA_DIR;
-/// of a program in the build tree the source tree; else share/pirouette beside the folder of the
-/// program or shared library, then as installed, then the source tree: the first that exists.
+/// share/pirouette in the prefix of the program or shared library; of a program in the build tree
+/// the source tree; as installed; the source tree: the first that exists.
 std::filesystem::path data_dir();
 
 /// Path of the robot's MJCF: robots/<robot>/<robot>.xml of the data folder, or config.robot itself

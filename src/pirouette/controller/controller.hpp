@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -35,9 +34,6 @@ class Controller {
 
   /// Where the controller believes the robot to be; nullptr for one that does not estimate.
   virtual const RobotState* estimate() const noexcept { return nullptr; }
-
-  /// m, along the path that it follows, from the path's start; absent without one.
-  virtual std::optional<double> path_progress() const noexcept { return std::nullopt; }
 
   /// All that the controller remembers, for restore(); empty for one that cannot tell.
   virtual std::vector<std::byte> snapshot() const { return {}; }

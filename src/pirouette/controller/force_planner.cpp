@@ -1,7 +1,7 @@
 #include "pirouette/controller/force_planner.hpp"
 
+#include "pirouette/base/stopwatch.hpp"
 #include "pirouette/controller/body_horizon.hpp"
-#include "pirouette/controller/stopwatch.hpp"
 
 namespace pirouette {
 

@@ -1,7 +1,7 @@
 #include "pirouette/controller/joint_control.hpp"
 
+#include "pirouette/base/stopwatch.hpp"
 #include "pirouette/controller/joint_friction.hpp"
-#include "pirouette/controller/stopwatch.hpp"
 
 namespace pirouette {
 

@@ -338,9 +338,6 @@ bool SpinController::restore(std::span<const std::byte> snapshot) {
 }
 ControllerStatus SpinController::status() const noexcept { return impl_->last.status; }
 const RobotState* SpinController::estimate() const noexcept { return &impl_->last.state; }
-std::optional<double> SpinController::path_progress() const noexcept {
-  return impl_->last.path.arc_length;
-}
 const TickTrace& SpinController::trace() const { return impl_->last; }
 const TickTiming& SpinController::timing() const { return impl_->timing; }
 

@@ -51,7 +51,6 @@ class SpinController final : public Controller {
 
   ControllerStatus status() const noexcept override;
   const RobotState* estimate() const noexcept override;
-  std::optional<double> path_progress() const noexcept override;
   const TickTrace& trace() const;
   const TickTiming& timing() const;
 

@@ -3,7 +3,6 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "pirouette/base/rotation.hpp"
+#include "pirouette/base/stopwatch.hpp"
 #include "pirouette/plant/faults.hpp"
 #include "pirouette/plant/random.hpp"
 #include "pirouette/plant/scene.hpp"
@@ -200,7 +200,7 @@ void Plant::Impl::begin_step() {
 }
 
 void Plant::Impl::step(const JointCommand& command) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   command_in_force = command_delay.pass(command);
   drive_motors(command_in_force);
   if (diverged) return;
@@ -210,8 +210,7 @@ void Plant::Impl::step(const JointCommand& command) {
   diverged = !is_sound(*model, *data);
   if (diverged) return;
   begin_step();
-  step_times.add(
-      std::chrono::duration<double, std::micro>(std::chrono::steady_clock::now() - start).count());
+  step_times.add(watch.microseconds());
 }
 
 void Plant::Impl::push(const Vec3& delta_v_W) {

@@ -1,21 +1,20 @@
 #include "pirouette/runtime/control_loop.hpp"
 
-#include <algorithm>
-#include <chrono>
 #include <utility>
+
+#include "pirouette/base/stopwatch.hpp"
 
 namespace pirouette {
 
 std::optional<TickView> ControlLoop::tick(const MotionCommand& motion) {
-  using Clock = std::chrono::steady_clock;
   const PlantTruth* truth = world_.truth();
   std::optional<SensorReading> reading = world_.sense();
   if (!reading) return std::nullopt;
   sensors_ = std::move(*reading);
   motion_ = motion;
-  const Clock::time_point begin = Clock::now();
+  const Stopwatch watch;
   command_ = &controller_.tick(sensors_, motion_);
-  const double tick_us = std::chrono::duration<double, std::micro>(Clock::now() - begin).count();
+  const double tick_us = watch.microseconds();
   return TickView{ticks_++, sensors_, motion_, *command_, truth, tick_us};
 }
 

@@ -1,12 +1,14 @@
 #include "pirouette/runtime/recording.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
+#include <iterator>
+#include <span>
 #include <sstream>
 #include <utility>
 
+#include "pirouette/base/memory.hpp"
 #include "pirouette/base/version.hpp"
 
 namespace pirouette {
@@ -20,26 +22,15 @@ std::string start_head() {
   return std::string("pirouette ") + version() + " (" + commit() + ") recording start 1\n";
 }
 
-template <class T>
-void put(std::ostream& stream, const T& value) {
-  stream.write(reinterpret_cast<const char*>(&value), sizeof value);
-}
-template <class T>
-bool get(std::istream& stream, T& value) {
-  stream.read(reinterpret_cast<char*>(&value), sizeof value);
-  return static_cast<bool>(stream);
-}
-
 std::optional<Error> write_start(const fs::path& folder, const RecordingStart& start) {
   const fs::path path = folder / kRecordingStartFile;
+  std::vector<std::byte> bytes;
+  MemoryWriter write(bytes);
+  write(start);
   std::ofstream stream(path, std::ios::binary);
   stream << start_head();
-  put(stream, start.first_tick);
-  for (const double value : start.pose.p_WB) put(stream, value);
-  for (const double value : start.pose.R_WB.reshaped()) put(stream, value);
-  put(stream, static_cast<std::uint64_t>(start.snapshot.size()));
-  stream.write(reinterpret_cast<const char*>(start.snapshot.data()),
-               static_cast<std::streamsize>(start.snapshot.size()));
+  stream.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
   stream.close();
   if (!stream) return Error{path.string(), 0, "", "cannot be written: is the disk full?"};
   return std::nullopt;
@@ -49,21 +40,16 @@ Result<RecordingStart> read_start(const fs::path& folder) {
   const fs::path path = folder / kRecordingStartFile;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) return Error{path.string(), 0, "", "cannot be read"};
-  const Error damaged{path.string(), 0, "", "is damaged: it ends too early or is another file"};
   std::string head;
   std::getline(stream, head);
-  if (!head.starts_with("pirouette ") || !head.ends_with(" recording start 1")) return damaged;
+  const std::string text((std::istreambuf_iterator<char>(stream)), {});
   RecordingStart start;
-  std::uint64_t size = 0;
-  bool good = get(stream, start.first_tick);
-  for (double& value : start.pose.p_WB) good = good && get(stream, value);
-  for (double& value : start.pose.R_WB.reshaped()) good = good && get(stream, value);
-  good = good && get(stream, size);
-  std::error_code error;
-  if (!good || size > fs::file_size(path, error) || error) return damaged;
-  start.snapshot.resize(size);
-  stream.read(reinterpret_cast<char*>(start.snapshot.data()), static_cast<std::streamsize>(size));
-  if (!stream || stream.peek() != std::ifstream::traits_type::eof()) return damaged;
+  MemoryReader read(std::as_bytes(std::span(text)));
+  read(start);
+  if (!head.starts_with("pirouette ") || !head.ends_with(" recording start 1") ||
+      !read.complete()) {
+    return Error{path.string(), 0, "", "is damaged: it ends too early or is another file"};
+  }
   return start;
 }
 
@@ -103,12 +89,8 @@ double number_at(const std::vector<char>& bytes, std::size_t at, std::size_t siz
 std::optional<ReplayDifference> compare(const RecordedTick& recorded,
                                         const RecordedTick& replayed) {
   std::vector<char> before, now;
-  RecordedTick::columns(recorded, [&](const char*, const char*, const char*, const auto& value) {
-    append_value(before, value);
-  });
-  RecordedTick::columns(replayed, [&](const char*, const char*, const char*, const auto& value) {
-    append_value(now, value);
-  });
+  append_row(before, recorded);
+  append_row(now, replayed);
   if (before == now) return std::nullopt;
   const auto differing = static_cast<std::size_t>(
       std::mismatch(before.begin(), before.end(), now.begin()).first - before.begin());

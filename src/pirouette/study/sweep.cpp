@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <chrono>
 #include <fstream>
 #include <map>
 #include <mutex>
@@ -11,6 +10,7 @@
 #include <thread>
 
 #include "pirouette/base/fingerprint.hpp"
+#include "pirouette/base/stopwatch.hpp"
 #include "pirouette/base/version.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/data_folders.hpp"
@@ -175,8 +175,7 @@ class Pool {
 
   void report() const {
     if (!options_.progress) return;
-    const double seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double seconds = watch_.seconds();
     SweepProgress progress;
     progress.resumed = total_ - jobs_.size();
     progress.done = progress.resumed + done_;
@@ -192,7 +191,7 @@ class Pool {
   const std::size_t total_;  ///< with those that were finished before
   const SweepOptions& options_;
   ResultsLog& log_;
-  const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+  const Stopwatch watch_;
   std::atomic<std::size_t> next_ = 0;
   std::atomic<bool> failed_ = false;
   std::mutex mutex_;  ///< of all that follows, and of log_

@@ -1,22 +1,16 @@
 #include "pirouette/trial/trial.hpp"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <iterator>
 
+#include "pirouette/base/stopwatch.hpp"
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/simulated_world.hpp"
 #include "pirouette/runtime/recording.hpp"
 
 namespace pirouette {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 constexpr double kFallTilt = 1.0;           // rad
 constexpr double kFallHeight = 0.1;         // m
@@ -130,7 +124,7 @@ class Trial final : public MotionSource, public Observer {
       observers.push_back(&last_seconds.emplace(controller_, start_pose(), world.period()));
     }
 
-    start_ = Clock::now();
+    watch_ = Stopwatch();
     const LoopEnd end = pirouette::run(world, controller_, *this, observers, options_.pacer);
     TrialResult result;
     result.interrupted = end == LoopEnd::kObserver;
@@ -229,7 +223,7 @@ class Trial final : public MotionSource, public Observer {
     TrialProgress progress;
     progress.time = schedule_.seconds(tick_);
     progress.duration = schedule_.seconds(schedule_.end);
-    progress.real_time_factor = progress.time / seconds_since(start_);
+    progress.real_time_factor = progress.time / watch_.seconds();
     if (tick_ >= schedule_.command) {
       const double direction = setup_.motion.yaw_rate < 0.0 ? -1.0 : 1.0;
       progress.turns = direction * (yaw_.value() - command_yaw_) / (2.0 * kPi);
@@ -239,7 +233,7 @@ class Trial final : public MotionSource, public Observer {
   }
 
   Metrics summarise() const {
-    const double wall = seconds_since(start_);
+    const double wall = watch_.seconds();
     const double simulated = schedule_.seconds(tick_);
     Metrics m = evaluate(record_, commanded_, schedule_.rate);
     m.fell = fall_tick_.has_value();
@@ -270,7 +264,7 @@ class Trial final : public MotionSource, public Observer {
   std::int64_t stood_down_ticks_ = 0;
   std::optional<std::int64_t> fall_tick_;
   Number stand_down_delay_;  ///< s
-  Clock::time_point start_;
+  Stopwatch watch_;          ///< since the first tick
 };
 
 }  // namespace
