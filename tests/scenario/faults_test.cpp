@@ -3,8 +3,8 @@
 
 #include <cmath>
 
+#include "pirouette/base/random.hpp"
 #include "pirouette/controller/command_guard.hpp"
-#include "pirouette/plant/random.hpp"
 #include "pirouette/plant/simulated_world.hpp"
 #include "support/closed_loop.hpp"
 #include "support/trial.hpp"

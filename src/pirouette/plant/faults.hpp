@@ -6,8 +6,8 @@
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
+#include "pirouette/base/random.hpp"
 #include "pirouette/plant/fault_config.hpp"
-#include "pirouette/plant/random.hpp"
 #include "pirouette/types/sensor_reading.hpp"
 
 namespace pirouette {

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "pirouette/base/random.hpp"
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/base/stopwatch.hpp"
 #include "pirouette/plant/faults.hpp"
-#include "pirouette/plant/random.hpp"
 #include "pirouette/plant/scene.hpp"
 #include "pirouette/plant/sensors.hpp"
 #include "pirouette/plant/spawn.hpp"

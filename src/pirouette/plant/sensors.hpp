@@ -5,7 +5,7 @@
 #include <deque>
 #include <optional>
 
-#include "pirouette/plant/random.hpp"
+#include "pirouette/base/random.hpp"
 #include "pirouette/plant/sensor_config.hpp"
 #include "pirouette/types/plant_truth.hpp"
 #include "pirouette/types/sensor_reading.hpp"

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
+#include "pirouette/base/random.hpp"
 #include "pirouette/base/rotation.hpp"
-#include "pirouette/plant/random.hpp"
 
 namespace pirouette {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdlib>
 
 #include "pirouette/base/fingerprint.hpp"
-#include "pirouette/base/philox.hpp"
+#include "pirouette/base/random.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/suggest.hpp"
 
@@ -29,12 +29,6 @@ std::array<std::uint32_t, 4> random_bits(const std::string& key, std::int64_t se
                 {low(of_file), high(of_file)});
 }
 
-/// Uniform in [0, 1), from 53 bits.
-double uniform(std::uint32_t high, std::uint32_t low) {
-  const std::uint64_t bits = (std::uint64_t{high} << 32 | low) >> 11;
-  return static_cast<double>(bits) * 0x1p-53;
-}
-
 std::string four_digits(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.4g", value);
@@ -52,7 +46,7 @@ std::string ExperimentDraw::to_string() const {
 
 std::string drawn_value(const ExperimentDraw& draw, std::int64_t seed, std::int64_t trial) {
   const std::array<std::uint32_t, 4> bits = random_bits(draw.key, seed, trial);
-  const double share = uniform(bits[0], bits[1]);
+  const double share = unit_interval(std::uint64_t{bits[0]} << 32 | bits[1]);
   if (!draw.values.empty()) {
     return draw.values[static_cast<std::size_t>(share * static_cast<double>(draw.values.size()))];
   }

@@ -1,5 +1,5 @@
 // The authors' test vectors of Philox-4x32-10 (Random123, kat_vectors).
-#include "pirouette/base/philox.hpp"
+#include "pirouette/base/random.hpp"
 
 #include <gtest/gtest.h>
 
