@@ -73,11 +73,11 @@ RENDERER := libegl1 libgl1-mesa-dri
 images: build  ## the pictures of the README, docs/images/*.png, by `make report`
 	@bash scripts/system_packages.sh $(RENDERER)
 	@for controller in pirouette mit; do \
-	  $(PIROUETTE) spin --controller $$controller --quiet --out $(IMAGES)/flat/$$controller || exit; \
+	  $(PIROUETTE) spin --controller $$controller --quiet --force --out $(IMAGES)/flat/$$controller || exit; \
 	done
 	@for controller in pirouette asc; do \
 	  $(PIROUETTE) spin --controller $$controller --terrain stairs:0.03x0.20 --rate 1 --turns 10 \
-	    --quiet --out $(IMAGES)/stairs/$$controller || exit; \
+	    --quiet --force --out $(IMAGES)/stairs/$$controller || exit; \
 	done
 	@$(MAKE) --no-print-directory report RUN='$(IMAGES)/flat/pirouette $(IMAGES)/flat/mit' \
 	  ARGS='--picture docs/images/spin.png'

@@ -87,7 +87,11 @@ void ConfigOptions::add_common(CLI::App& command) {
 
 void ConfigOptions::add_run(CLI::App& command) {
   add_shortcut(command, {"--rate", "run.rate"}, "RAD/S", "Yaw rate; positive turns left [0.7]");
-  add_shortcut(command, {"--turns", "run.turns"}, "N", "Turns to record after settling [8]");
+  CLI::Option* turns =
+      add_shortcut(command, {"--turns", "run.turns"}, "N", "Turns to record after settling [8]");
+  add_shortcut(command, {"--angle", "run.angle_deg"}, "DEG",
+               "Turn by this angle, positive to the left, then stand")
+      ->excludes(turns);
   add_shortcut(command, {"--terrain", "plant.terrain"}, "WHAT",
                "flat, slope:10 (degrees), slope:10+rough:0.02, stairs:0.03x0.20 (m), "
                "stairs:0.03x0.20@30, rough:0.04, blocks:0.05, patch:0.3x0.6 (friction, m) or "
@@ -129,8 +133,8 @@ void ConfigOptions::add_turn(CLI::App& command) {
                                         "Direction of travel from the robot's front: 90 is to its "
                                         "left, 180 backwards [0]")
                             ->type_name("DEG");
-  for (CLI::Option* other :
-       {radius, offset, command.get_option("--rate"), command.get_option("--turns")}) {
+  for (CLI::Option* other : {radius, offset, command.get_option("--rate"),
+                             command.get_option("--turns"), command.get_option("--angle")}) {
     path->excludes(other);
   }
 }

@@ -7,7 +7,8 @@ namespace pirouette::app {
 
 enum ExitCode : int {
   kDone = 0,
-  kFell = 1,      ///< or a bound was missed, or a replay differs
+  kFell = 1,      ///< the robot fell
+  kNotDone = 1,   ///< less was done than asked for; a bound was missed; a replay differs
   kBadUsage = 2,  ///< command line, configuration, files
   kSignal = 128,  ///< plus the signal's number: 130 after Ctrl-C
 };

@@ -14,8 +14,7 @@ extern "C" void remember_signal(int signal) { received = signal; }
 }  // namespace
 
 void watch_interrupts() {
-  std::signal(SIGINT, remember_signal);
-  std::signal(SIGTERM, remember_signal);
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) std::signal(signal, remember_signal);
 }
 
 int interrupt_signal() { return received; }

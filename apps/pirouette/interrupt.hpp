@@ -1,9 +1,9 @@
-// Ctrl-C ends a run in good order.
+// Signals that end a run in good order.
 #pragma once
 
 namespace pirouette::app {
 
-/// From now on SIGINT and SIGTERM are only remembered.
+/// From now on SIGINT, SIGTERM and SIGHUP are only remembered.
 void watch_interrupts();
 
 /// Number of the signal that came, 0 for none. Any thread may ask.

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -101,9 +102,8 @@ int run(int argc, char** argv) {
   CLI::App app{"Accurate blind spinning of quadrupeds, simulated on MuJoCo.", "pirouette"};
   app.footer(
       "pirouette VERB --help explains a verb. Other verbs run the program pirouette-VERB.\n"
-      "Exit codes: 0 done, 1 the robot fell, a bound was missed or a replay differs, 2 bad usage "
-      "or "
-      "configuration.");
+      "Exit codes: 0 done; 1 the robot fell or did less than asked, a bound was missed or a replay "
+      "differs; 2 bad usage, configuration or files; 128 + N ended by signal N.");
   app.set_version_flag("--version", std::string("pirouette ") + version() + " (" + commit() + ")");
   app.require_subcommand(0, 1);
   const std::string command_line = shell_line(argc, argv);
@@ -142,7 +142,10 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
-    return pirouette::app::run(argc, argv);
+    const int code = pirouette::app::run(argc, argv);
+    // A full disk or a closed pipe behind standard output shows when it is flushed.
+    if (std::cout.flush() && std::fflush(stdout) == 0) return code;
+    return pirouette::app::report({{"", 0, "", "standard output cannot be written"}});
   } catch (const std::exception& error) {
     return pirouette::app::report({{"", 0, "", error.what()}});
   }

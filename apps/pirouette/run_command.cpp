@@ -1,6 +1,7 @@
 #include "run_command.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -17,6 +18,8 @@
 
 namespace pirouette::app {
 namespace {
+
+constexpr double kLeastAngleError = 1.0;  // deg, that is allowed of any angle
 
 std::string short_number(double value) {
   char text[32];
@@ -61,6 +64,56 @@ Result<TrialResult> simulate(const Config& config, TrialOptions options, bool sh
   return run_trial(config, options);
 }
 
+/// Bytes that the run folder is going to take, about.
+std::uintmax_t expected_size(const Config& config, bool records_whole_run) {
+  const Result<TrialSetup> setup = set_up(config);
+  if (!setup) return 0;  // told when it starts
+  std::vector<char> trace_row, recorded_row;
+  const TickTrace tick;
+  const PlantTruth truth;
+  append_row(trace_row, TraceRow{tick, truth});
+  append_row(recorded_row, RecordedTick{});
+  constexpr double kTerrainPoints = 2.0 * kTerrainHalfExtent / kTerrainPitch + 1.0;
+  double bytes = sizeof(float) * kTerrainPoints * kTerrainPoints;
+  bytes += expected_duration(setup.value()) * config.run.trace_rate *
+           static_cast<double>(trace_row.size());
+  const double recorded_time =
+      records_whole_run ? expected_duration(setup.value()) : 2.0 * FlightRecorder::kKept;
+  bytes += recorded_time * config.control.rate * static_cast<double>(recorded_row.size());
+  return static_cast<std::uintmax_t>(bytes);
+}
+
+/// One line on stderr when what was asked for was not done, and the exit code.
+int verdict(const Config& config, const TrialResult& trial, const std::string& folder) {
+  const Metrics& m = trial.metrics;
+  if (m.interrupted) {
+    std::cerr << "interrupted: what was measured until then is in " << folder << "\n";
+    return kSignal + interrupt_signal();
+  }
+  if (m.fell) {
+    std::cerr << "the robot fell: what went in and out before is in " << folder << "/"
+              << kRecordingFile << "; pirouette replay " << folder << "\n";
+    return kFell;
+  }
+  if (m.angle_error_deg) {
+    const double allowed =
+        std::max(kLeastAngleError, (1.0 - kDoneShare) * std::abs(config.run.angle_deg));
+    if (std::abs(*m.angle_error_deg) <= allowed && trial.completed) return kDone;
+    std::cerr << "not done: " << short_number(*m.angle_error_deg) << " deg off "
+              << short_number(config.run.angle_deg) << " deg"
+              << (trial.completed ? "" : " when the time limit (run.time_limit) came")
+              << "; allowed: " << short_number(allowed) << " deg\n";
+    return kNotDone;
+  }
+  if (trial.completed) return kDone;
+  std::cerr << "not done: " << short_number(100.0 * m.done.value_or(0.0)) << " % of the "
+            << (!config.run.path.empty() ? "laps"
+                : config.run.rate != 0.0 ? "turns"
+                                         : "distance")
+            << " when the time limit (run.time_limit) came\n";
+  return kNotDone;
+}
+
 }  // namespace
 
 RunCommand::RunCommand(CLI::App& app, Kind kind, std::string command_line)
@@ -72,8 +125,9 @@ RunCommand::RunCommand(CLI::App& app, Kind kind, std::string command_line)
   config_options_.add_run(*command_);
   if (kind == Kind::kTurn) config_options_.add_turn(*command_);
   config_options_.add_common(*command_);
-  command_->add_option("--out", out_, "Run folder; an earlier run there is replaced [runs/...]")
+  command_->add_option("--out", out_, "Run folder, new or empty [the next free one in runs/]")
       ->type_name("DIR");
+  command_->add_flag("--force", force_, "Replace the files of an earlier run in the run folder");
   command_->add_flag("--json", json_, "Print metrics.json instead of the table");
   command_->add_flag("--record", record_,
                      "Record every tick's readings and commands; without it only the last 10 s "
@@ -94,27 +148,41 @@ std::string RunCommand::default_folder(const Config& config) const {
   name += "-" + config.plant.terrain + "-";
   name += config.run.path.empty() ? short_number(config.run.rate)
                                   : std::filesystem::path(config.run.path).stem().string();
+  if (config.run.angle_deg != 0.0) name += "-" + short_number(config.run.angle_deg) + "deg";
+  if (config.run.path.empty() && config.run.velocity != standard.run.velocity) {
+    name += "-" + short_number(config.run.velocity[0]) + "," + short_number(config.run.velocity[1]);
+  }
   name += "-seed" + std::to_string(config.run.seed);
   std::erase(name, ':');
   std::replace(name.begin(), name.end(), '/', '_');
   return "runs/" + name;
 }
 
+Result<RunFolder> RunCommand::open_folder(const Config& config) const {
+  const RunFolderOptions options{force_, expected_size(config, record_)};
+  Result<RunFolder> folder = out_     ? RunFolder::open(*out_, options)
+                             : force_ ? RunFolder::open(default_folder(config), options)
+                                      : RunFolder::open_next(default_folder(config), options);
+  if (folder) return folder;
+  Errors errors = folder.errors();
+  for (Error& error : errors) error = {"--out", 0, "", error.to_string()};
+  return errors;
+}
+
 int RunCommand::run() const {
   const Result<Config> loaded = config_options_.load();
   if (!loaded) return report(loaded.errors());
   const Config& config = loaded.value();
-
-  Result<RunFolder> folder = RunFolder::open(out_.value_or(default_folder(config)));
-  if (!folder) {
-    Errors errors = folder.errors();
-    for (Error& error : errors) error = {"--out", 0, "", error.to_string()};
-    return report(errors);
+  if (const Errors errors = check_trial(config); !errors.empty()) {
+    return report(config_options_.in_typed_words(errors));
   }
+
+  watch_interrupts();
+  Result<RunFolder> folder = open_folder(config);
+  if (!folder) return report(folder.errors());
   Result<NpyRowsFile> trace = create_trace_file(folder.value().file(kTraceFile));
   if (!trace) return report(trace.errors());
 
-  watch_interrupts();
   RealTimePacer pacer(1.0 / config.control.rate);
   const std::vector<std::string> refused =
       realtime_ ? request_real_time() : std::vector<std::string>{};
@@ -125,25 +193,18 @@ int RunCommand::run() const {
   options.records_whole_run = record_;
   const Result<TrialResult> trial = simulate(config, options, !quiet_);
   if (!trial) return report(config_options_.in_typed_words(trial.errors()));
-  if (trial.value().interrupted) {
-    std::cerr << "interrupted: no run folder was written\n";
-    return kSignal + interrupt_signal();
-  }
   if (realtime_) std::cerr << pacer.summary(refused) << "\n";
   const Metrics& metrics = trial.value().metrics;
   if (const auto error = save(folder.value(), trace.value(), config, metrics, command_line_)) {
     return report({*error});
   }
+  const std::string place = shown_path(folder.value().path());
   if (json_) {
     std::cout << to_json(metrics);
   } else if (!quiet_) {
-    std::cout << summary(metrics) << "\nRun folder: " << shown_path(folder.value().path()) << "\n";
+    std::cout << summary(metrics) << "\nRun folder: " << place << "\n";
   }
-  if (!metrics.fell) return kDone;
-  std::cerr << "the robot fell: what went in and out before is in "
-            << shown_path(folder.value().path() / kRecordingFile) << "; pirouette replay "
-            << shown_path(folder.value().path()) << "\n";
-  return kFell;
+  return verdict(config, trial.value(), place);
 }
 
 }  // namespace pirouette::app

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "config_options.hpp"
+#include "pirouette/trial/run_folder.hpp"
 
 namespace pirouette::app {
 
@@ -21,12 +22,14 @@ class RunCommand {
 
  private:
   std::string default_folder(const Config& config) const;
+  Result<RunFolder> open_folder(const Config& config) const;
 
   Kind kind_;
   std::string command_line_;
   CLI::App* command_;
   ConfigOptions config_options_;
   std::optional<std::string> out_;
+  bool force_ = false;
   bool json_ = false;
   bool quiet_ = false;
   bool realtime_ = false;

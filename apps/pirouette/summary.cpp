@@ -77,15 +77,22 @@ void add_context(Table& table, const RunContext& c) {
 
 void add_motion(Table& table, const Metrics& m) {
   const ComMetrics& com = m.com;
-  table.title(m.fell ? "Measured until the robot fell" : "Measured");
+  table.title(m.fell          ? "Measured until the robot fell"
+              : m.interrupted ? "Measured until it was interrupted"
+                              : "Measured");
   if (m.fell) table.row("FELL", "after " + fixed(m.fall_time_s, "s", 2));
   if (!m.yaw_rate_mean) {
     table.row("motion", "none: it ended before the recording began");
     return;
   }
   table.row("turns", fixed(m.turns_done, "", 3));
-  table.row("yaw rate", fixed(m.yaw_rate_mean, "rad/s", 4) + ", error " +
-                            shown(m.yaw_rate_error, "%", 2, 100.0));
+  if (m.angle_error_deg) {
+    table.row("angle", fixed(360.0 * m.turns_done, "deg", 2) + ", error " +
+                           fixed(m.angle_error_deg, "deg", 2));
+  }
+  table.row("yaw rate",
+            fixed(m.yaw_rate_mean, "rad/s", 4) +
+                (m.yaw_rate_error ? ", error " + shown(m.yaw_rate_error, "%", 2, 100.0) : ""));
   if (com.distance_to_point_mean_mm) {
     table.row("distance to point", "mean " + shown(com.distance_to_point_mean_mm, "mm") +
                                        ", 95 % " + shown(com.distance_to_point_p95_mm, "mm") +

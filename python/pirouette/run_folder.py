@@ -52,7 +52,9 @@ class Run:
     @property
     def record_start(self) -> float:
         """Time (s) of the first sample that the metrics count."""
-        start = self.config["gait"]["stand_time"] + self.config["run"]["settle_time"]
+        run = self.config["run"]
+        settling = 0.0 if run.get("angle_deg") else run["settle_time"]
+        start = self.config["gait"]["stand_time"] + settling
         first, last = self.trace["time"][[0, -1]]
         return float(start if start < last - SHORTEST_RECORD else first)
 
@@ -163,3 +165,14 @@ def load_ground(folder: Path, context: dict) -> Ground:
         raise RunError(
             f"{folder / 'metrics.json'}: context.terrain is {terrain!r}; expected as of --terrain"
         ) from None
+
+
+def add_to_record(folder: Path, name: str) -> None:
+    """Lists the file `name` among those of the run that a later run with --force may replace."""
+    record = folder / "files.txt"
+    try:
+        names = record.read_text(encoding="utf-8").splitlines()
+        if name not in names:
+            record.write_text("\n".join([*names, name, ""]), encoding="utf-8")
+    except (OSError, UnicodeDecodeError):
+        return  # a folder without a record, or that is only read: nothing replaces its files

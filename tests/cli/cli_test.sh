@@ -208,28 +208,76 @@ wrong '--out' spin --out /proc/pirouette/run
 wrong 'with other things in it' spin --out thesis
 [ "$(cat sandbox/thesis/thesis.tex)" = years ] || fail 'touched a folder that is no run'
 
-# Ctrl-C, once the first line of progress is out.
+ln -s nowhere sandbox/dangling
+wrong 'is a link to nothing' spin --out dangling
+wrong 'is a link to nothing' spin --out dangling/run
+# What only looks like a run is nobody's to delete.
+mkdir -p sandbox/fake/notes && touch sandbox/fake/run.toml sandbox/fake/metrics.json
+echo mine > sandbox/fake/notes/a
+wrong 'with other things in it' spin --out fake
+wrong 'with other things in it' spin --out fake --force
+[ "$(cat sandbox/fake/notes/a)" = mine ] || fail 'touched notes'
+wrong 'MB left, and the run needs' spin --turns 50000 --set run.trace_rate=500 --out huge
+
+# Signals, once the first line of progress is out: what was measured is kept.
+for signal in INT:130 TERM:143 HUP:129; do
+  : > stderr
+  "$program" spin --turns 1000 --out interrupted > stdout 2> stderr &
+  pid=$!
+  until [ -s stderr ]; do sleep 0.05; done
+  kill -${signal%:*} $pid
+  wait $pid
+  code=$?
+  [ $code -eq ${signal#*:} ] || fail "exit code $code after $signal"
+  grep -q '"interrupted": true' interrupted/metrics.json || fail "$signal: not marked as interrupted"
+  [ -s interrupted/trace.npy ] || fail "$signal: no trace"
+  rm -r interrupted
+done
+
+# A killed run leaves its part folder; the next one cleans up.
 : > stderr
-"$program" spin --turns 1000 --out interrupted > stdout 2> stderr &
+"$program" spin --turns 1000 --out killed > stdout 2> stderr &
 pid=$!
 until [ -s stderr ]; do sleep 0.05; done
-kill -INT $pid
-wait $pid
-code=$?
-[ $code -eq 130 ] || fail "exit code $code after SIGINT, not 130"
-[ -z "$(ls -d interrupted* 2> /dev/null)" ] || fail 'an interrupted run leaves files behind'
+"$program" spin --out killed > stdout 2> second
+[ $? -eq 2 ] && grep -q 'is being written by another process' second || fail 'two runs in one folder'
+kill -KILL $pid
+wait $pid 2> /dev/null
+[ -d .killed.pirouette-part ] || fail 'where is the part folder?'
+
+# Standard output that takes nothing.
+"$program" spin --turns 0.05 --set run.settle_time=0.2 --json --out full > /dev/full 2> stderr
+[ $? -eq 2 ] && grep -q 'standard output cannot be written' stderr || fail '--json > /dev/full'
+[ -e .killed.pirouette-part ] && fail 'left-overs of a killed run stay'
+"$program" config doc > /dev/full 2> stderr
+[ $? -eq 2 ] || fail 'config doc > /dev/full'
+
+# Less than what was asked for is exit code 1, with one line.
+"$program" spin --turns 8 --set run.time_limit=1 --set run.settle_time=0.2 --quiet --out less 2> stderr
+[ $? -eq 1 ] && grep -q '^not done: .* of the turns' stderr || fail 'turns that were not done'
+for angle in 20 -20; do
+  "$program" spin --angle $angle --rate 1 --json --quiet --out angle$angle > stdout 2> stderr ||
+    fail "a turn by $angle degrees"
+  grep -q '"angle_error_deg": -\?0\.' stdout || fail "more than a degree off $angle"
+done
+wrong '--angle' spin --angle 90 --turns 2
+wrong 'run.rate other than 0' spin --angle 90 --rate 0
 
 # A run, and the same again from what it left.
 short='--turns 0.05 --set run.settle_time=0.2'
 "$program" spin $short --json > stdout 2> stderr || fail 'a short spin'
-[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'metrics.json run.toml terrain.npy trace.npy' ] || fail 'run folder'
+[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'files.txt metrics.json run.toml terrain.npy trace.npy' ] || fail 'run folder'
 cmp -s stdout runs/spin-flat-0.7-seed1/metrics.json || fail '--json prints something else'
 grep -q '^100 %' stderr || fail 'no progress on stderr'
 "$program" spin --config runs/spin-flat-0.7-seed1/run.toml --out again --quiet > stdout 2> stderr ||
   fail 'a run from run.toml'
 [ -s stdout ] || [ -s stderr ] && fail '--quiet is not quiet'
 cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy || fail 'run.toml gives another trace'
-"$program" spin $short --seed 2 --out again > stdout 2> stderr || fail 'replacing a run'
+"$program" spin $short --seed 2 --out again > stdout 2> stderr
+[ $? -eq 2 ] && grep -q 'holds an earlier run' stderr || fail 'replaces a run without --force'
+echo mine > again/note
+"$program" spin $short --seed 2 --out again --force > stdout 2> stderr || fail 'replacing a run'
+[ "$(cat again/note)" = mine ] || fail 'a note beside the run is gone'
 grep -q 'Run folder: again' stdout || fail 'the table does not name the run folder'
 cmp -s runs/spin-flat-0.7-seed1/trace.npy again/trace.npy && fail 'another seed, the same trace'
 

@@ -24,8 +24,8 @@ std::string content(const fs::path& path) {
 class RunFolderTest : public test::TempFolderTest {
  protected:
   /// A complete run whose metrics.json says `metrics`.
-  static void leave_run(const fs::path& path, const std::string& metrics) {
-    Result<RunFolder> folder = RunFolder::open(path);
+  static void leave_run(const fs::path& path, const std::string& metrics, bool replace = false) {
+    Result<RunFolder> folder = RunFolder::open(path, {replace, 0});
     ASSERT_TRUE(folder.ok()) << folder.errors().front().to_string();
     ASSERT_FALSE(folder.value().write(kRunFile, "x = 1\n"));
     ASSERT_FALSE(folder.value().write(kMetricsFile, metrics));
@@ -73,18 +73,88 @@ TEST_F(RunFolderTest, KeepsParentsThatSomebodyElseUsesMeanwhile) {
   EXPECT_EQ(content(folder_ / "runs" / "note"), "mine");
 }
 
-TEST_F(RunFolderTest, ReplacesAnEarlierRunWhole) {
-  leave_run(folder_ / "a", "1");
-  std::ofstream(folder_ / "a" / "trace.npy") << "of the first run";
-  leave_run(folder_ / "a", "2");
+TEST_F(RunFolderTest, ReplacesTheFilesOfAnEarlierRunAndNothingElse) {
+  {
+    Result<RunFolder> folder = RunFolder::open(folder_ / "a");
+    ASSERT_TRUE(folder.ok());
+    for (const char* name : {kRunFile, kMetricsFile, kTraceFile}) {
+      ASSERT_FALSE(folder.value().write(name, "1"));
+    }
+    ASSERT_FALSE(folder.value().commit());
+  }
+  fs::create_directory(folder_ / "a" / "notes");
+  std::ofstream(folder_ / "a" / "notes" / "n") << "mine";
+  leave_run(folder_ / "a", "2", true);
   EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "2");
-  EXPECT_FALSE(fs::exists(folder_ / "a" / "trace.npy"));
+  EXPECT_FALSE(fs::exists(folder_ / "a" / kTraceFile)) << "of the earlier run";
+  EXPECT_EQ(content(folder_ / "a" / "notes" / "n"), "mine");
   EXPECT_EQ(entries(folder_), 1u);
+}
+
+TEST_F(RunFolderTest, ReplacesNothingUnasked) {
+  leave_run(folder_ / "a", "1");
+  EXPECT_FALSE(RunFolder::open(folder_ / "a").ok());
+  EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "1");
+}
+
+TEST_F(RunFolderTest, NeverReplacesAFileThatTheRecordDoesNotList) {
+  leave_run(folder_ / "a", "1");
+  std::ofstream(folder_ / "a" / kTraceFile) << "mine";
+  EXPECT_FALSE(RunFolder::open(folder_ / "a", {true, 0}).ok());
+  EXPECT_EQ(content(folder_ / "a" / kTraceFile), "mine");
+}
+
+TEST_F(RunFolderTest, DoesNotBelieveARecordThatListsOtherFiles) {
+  leave_run(folder_ / "a", "1");
+  std::ofstream(folder_ / "thesis.tex") << "years";
+  std::ofstream(folder_ / "a" / "data.csv") << "mine";
+  std::ofstream(folder_ / "a" / kRecordFile, std::ios::app) << "../thesis.tex\ndata.csv\n";
+  leave_run(folder_ / "a", "2", true);
+  EXPECT_EQ(content(folder_ / "thesis.tex"), "years");
+  EXPECT_EQ(content(folder_ / "a" / "data.csv"), "mine");
+}
+
+TEST_F(RunFolderTest, TakesTheNextNameThatIsFree) {
+  leave_run(folder_ / "a", "1");
+  const Result<RunFolder> second = RunFolder::open_next(folder_ / "a");
+  ASSERT_TRUE(second.ok());
+  EXPECT_EQ(second.value().path(), folder_ / "a-2");
+  const Result<RunFolder> third = RunFolder::open_next(folder_ / "a");
+  ASSERT_TRUE(third.ok()) << "while the second is being written";
+  EXPECT_EQ(third.value().path(), folder_ / "a-3");
+}
+
+TEST_F(RunFolderTest, IsForOneProcessAtATime) {
+  const Result<RunFolder> first = RunFolder::open(folder_ / "a");
+  ASSERT_TRUE(first.ok());
+  EXPECT_FALSE(RunFolder::open(folder_ / "a").ok());
+}
+
+TEST_F(RunFolderTest, CleansUpAfterAKilledProcess) {
+  const fs::path part = folder_ / ".b.pirouette-part";
+  fs::create_directory(part);
+  std::ofstream(part / kTraceFile) << "half";
+  std::ofstream(part / "lock");
+  const fs::path with_notes = folder_ / ".c.pirouette-part";
+  fs::create_directory(with_notes);
+  std::ofstream(with_notes / "note") << "mine";
+  leave_run(folder_ / "a", "1");
+  EXPECT_FALSE(fs::exists(part));
+  EXPECT_EQ(content(with_notes / "note"), "mine");
+}
+
+TEST_F(RunFolderTest, RefusesALinkToNothingAndADiskThatIsTooSmall) {
+  fs::create_symlink(folder_ / "nowhere", folder_ / "link");
+  EXPECT_FALSE(RunFolder::open(folder_ / "link").ok());
+  EXPECT_FALSE(RunFolder::open(folder_ / "link" / "a").ok());
+  constexpr std::uintmax_t kExabyte = 1'000'000'000'000'000'000U;
+  EXPECT_FALSE(RunFolder::open(folder_ / "a", {false, kExabyte}).ok());
+  EXPECT_FALSE(fs::exists(folder_ / "a"));
 }
 
 TEST_F(RunFolderTest, KeepsTheEarlierRunWhenTheNewOneFails) {
   leave_run(folder_ / "a", "1");
-  { ASSERT_TRUE(RunFolder::open(folder_ / "a").ok()); }
+  { ASSERT_TRUE(RunFolder::open(folder_ / "a", {true, 0}).ok()); }
   EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "1");
   EXPECT_EQ(entries(folder_), 1u);
 }
@@ -99,7 +169,7 @@ TEST_F(RunFolderTest, TakesAnEmptyFolderAndATrailingSlash) {
 TEST_F(RunFolderTest, FollowsALinkToTheRunItReplaces) {
   leave_run(folder_ / "a", "1");
   fs::create_directory_symlink(folder_ / "a", folder_ / "latest");
-  leave_run(folder_ / "latest", "2");
+  leave_run(folder_ / "latest", "2", true);
   EXPECT_TRUE(fs::is_symlink(folder_ / "latest"));
   EXPECT_EQ(content(folder_ / "a" / kMetricsFile), "2");
 }

@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 
 from pirouette import command
-from pirouette.run_folder import load
+from pirouette.run_folder import add_to_record, load
 
 
 def default_file(folders: list[Path]) -> Path:
@@ -34,6 +34,8 @@ def write(folders: list[Path], out: Path | None, picture: Path | None = None) ->
         if draw and picture:
             with command.whole_file(picture) as picture_part:
                 draw(runs, picture_part)
+    if len(folders) == 1 and out == default_file(folders):
+        add_to_record(folders[0], out.name)
     return out
 
 

@@ -31,6 +31,7 @@ MEASURED = {
     "estimator.position_error_mm": ("estimator error", "mm"),
     "estimator.yaw_error_rad": ("estimator error, yaw", "rad"),
 }
+DONE_SHARE = 0.98  # of what was commanded, at least: kDoneShare of trial/trial.hpp
 SETTINGS = {
     "robot": "robot",
     "terrain": "terrain",
@@ -129,14 +130,33 @@ def flattened(tree: dict, prefix: str = "") -> dict[str, object]:
 def headlines(runs: list[Run]) -> str:
     """A sentence about each run; falls must not be overlooked."""
     return "".join(
-        f'<p class="{"notice" if run.metrics.get("fell") else "headline"}">'
+        f'<p class="{"notice" if is_incomplete(run) else "headline"}">'
         f"{escape(f'{run.name}: {headline(run)}')}</p>"
         for run in runs
     )
 
 
+def is_incomplete(run: Run) -> bool:
+    """Whether it did less than it was told."""
+    return bool(run.metrics.get("fell") or run.metrics.get("interrupted") or shortfall(run))
+
+
+def shortfall(run: Run) -> str:
+    """What a run that did not fall did less than it was told; empty: nothing."""
+    if run.metrics.get("interrupted"):
+        return "interrupted; the numbers are of the part until then. "
+    done = run.metrics.get("done")
+    if isinstance(done, float) and done < DONE_SHARE:
+        return f"{rounded(100.0 * done)} % of what was commanded was done. "
+    return ""
+
+
 def headline(run: Run) -> str:
     """What the robot did, in words."""
+    return shortfall(run) + motion(run)
+
+
+def motion(run: Run) -> str:
     metrics, context = run.metrics, run.context
     where = f"on {context.get('terrain', 'flat')}, controller {context.get('controller')}"
     if metrics.get("fell"):

@@ -37,6 +37,10 @@ Errors validate(const Config& config) {
   require(config.run.trace_rate <= config.control.rate, "run.trace_rate", "given ",
           config.run.trace_rate, " Hz; allowed: up to control.rate = ", config.control.rate, " Hz");
 
+  require(config.run.angle_deg == 0.0 || (config.run.rate != 0.0 && config.run.path.empty()),
+          "run.angle_deg", "given ", config.run.angle_deg,
+          " deg; allowed: with a run.rate other than 0 and without run.path");
+
   constexpr double kMinSwingTime = GaitConfig::kMinSwingTime;
   const double swing_time = config.gait.period * (1.0 - config.gait.duty);
   require(swing_time > kMinSwingTime - kRounding, "gait.duty", "given ", config.gait.duty,

@@ -117,6 +117,9 @@ struct RunContext {
 
 struct Metrics {
   bool fell = false;
+  bool interrupted = false;
+  Number done;  ///< set by the trial
+  Number angle_error_deg;
   Number fall_time_s, stand_down_delay_s;
   double turns_done = 0.0;
   Number yaw_rate_mean, yaw_rate_error;
@@ -169,6 +172,14 @@ std::string metrics_markdown();
 template <class Self, class Visit>
 void Metrics::fields(Self& m, Visit&& v) {
   v(m.fell, "fell", "", "the robot fell, or its controller gave up for a second");
+  v(m.interrupted, "interrupted", "",
+    "a signal ended the run: the numbers are of the part until then");
+  v(m.done, "done", "1",
+    "share of the commanded turns, laps, angle or distance that was done while recording; null "
+    "where "
+    "none was commanded");
+  v(m.angle_error_deg, "angle_error_deg", "deg",
+    "true angle turned until the robot stood again less run.angle_deg; null without one");
   v(m.fall_time_s, "fall_time_s", "s", "when it fell, from the start of the simulation");
   v(m.stand_down_delay_s, "stand_down_delay_s", "s",
     "from the fall to the controller's stand-down; null without a fall, or when none came in 1 s");

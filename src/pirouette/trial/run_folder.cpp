@@ -1,10 +1,16 @@
 #include "pirouette/trial/run_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cerrno>
 #include <cmath>
+#include <cstring>
 #include <fstream>
 #include <system_error>
 #include <utility>
@@ -17,65 +23,228 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kLockFile = "lock";
+constexpr const char* kPartSuffix = ".pirouette-part";
+constexpr const char* kRecordHead =
+    "# What pirouette wrote into this folder. --force replaces these files and nothing else.";
+
 Error out_error(const fs::path& path, std::string message) {
   return {path.string(), 0, "", std::move(message)};
 }
 
-fs::path beside(const fs::path& path, const char* suffix) {
-  return path.string() + suffix + std::to_string(::getpid());
+Error system_error(const fs::path& path, const char* what) {
+  return out_error(path, std::string(what) + ": " + std::strerror(errno));
 }
 
-bool is_run(const fs::path& folder) {
-  return fs::is_regular_file(folder / kRunFile) && fs::is_regular_file(folder / kMetricsFile);
+bool is_run_file(const std::string& name) {
+  return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end();
+}
+
+bool is_regular(const fs::path& path) { return fs::is_regular_file(fs::symlink_status(path)); }
+
+/// Names in the record of `folder` of files that are there; empty without a record of ours.
+std::vector<std::string> recorded_files(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::ifstream record(folder / kRecordFile);
+  std::string line;
+  if (!std::getline(record, line) || line != kRecordHead) return names;
+  while (std::getline(record, line)) {
+    // A name that is no run file is not believed, whoever wrote it there.
+    if (is_run_file(line) && is_regular(folder / line)) names.push_back(line);
+  }
+  return names;
+}
+
+std::string record_text(const std::vector<std::string>& names) {
+  std::string text = std::string(kRecordHead) + "\n";
+  for (const std::string& name : names) text += name + "\n";
+  return text;
 }
 
 /// What is wrong with putting a run at `path`, as far as one can see without writing.
-std::optional<Error> check_target(const fs::path& path) {
+std::optional<Error> check_target(const fs::path& path, bool replace) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (!fs::exists(status)) return std::nullopt;
   if (!fs::is_directory(status)) return out_error(path, "is a file; allowed: a folder for the run");
   const bool empty = fs::is_empty(path, error);
   if (error) return out_error(path, error.message());
-  if (!empty && !is_run(path)) {
+  if (empty) return std::nullopt;
+  const std::vector<std::string> ours = recorded_files(path);
+  if (ours.empty()) {
+    return out_error(path, std::string("is a folder with other things in it; allowed: a new or "
+                                       "empty folder, or with --force one whose ") +
+                               kRecordFile + " lists the files of an earlier run");
+  }
+  if (!replace) {
     return out_error(path,
-                     "is a folder with other things in it; allowed: a new or empty folder, or an "
-                     "earlier run, which is replaced");
+                     "holds an earlier run; allowed: a new or empty folder, or --force to replace "
+                     "the files of that run");
+  }
+  for (const char* name : kRunFiles) {
+    const bool listed = std::find(ours.begin(), ours.end(), name) != ours.end();
+    if (!listed && fs::exists(fs::symlink_status(path / name))) {
+      return out_error(path / name, std::string("is no file of the earlier run: ") + kRecordFile +
+                                        " does not list it; move it away first");
+    }
   }
   return std::nullopt;
 }
 
-}  // namespace
+std::optional<Error> check_space(const fs::path& folder, std::uintmax_t size) {
+  std::error_code error;
+  const fs::space_info space = fs::space(folder.parent_path(), error);
+  if (error || space.available >= size) return std::nullopt;
+  constexpr double kMegabyte = 1e6;
+  const auto megabytes = [](std::uintmax_t bytes) {
+    return std::to_string(static_cast<std::int64_t>(static_cast<double>(bytes) / kMegabyte)) +
+           " MB";
+  };
+  return out_error(folder, "the disk has " + megabytes(space.available) +
+                               " left, and the run needs " + megabytes(size) +
+                               "; run.trace_rate and run.turns make it smaller");
+}
 
-Result<RunFolder> RunFolder::open(const fs::path& path) {
+/// `path` as an absolute one with links followed; the error when it is a link to nothing.
+Result<fs::path> final_place(const fs::path& path) {
   if (path.empty()) return Error{"", 0, "", "the run folder has no name"};
   std::error_code error;
-  RunFolder folder;
-  folder.path_ = fs::weakly_canonical(fs::absolute(path), error);
+  fs::path place = fs::absolute(path, error).lexically_normal();
+  if (!place.has_filename()) place = place.parent_path();
   if (error) return out_error(path, error.message());
-  if (!folder.path_.has_filename()) folder.path_ = folder.path_.parent_path();
-  if (const auto wrong = check_target(folder.path_)) return *wrong;
+  for (fs::path p = place; p.has_relative_path(); p = p.parent_path()) {
+    if (fs::is_symlink(fs::symlink_status(p, error)) && !fs::exists(p, error)) {
+      return out_error(p,
+                       "is a link to nothing; allowed: a folder, or a name that is not there yet");
+    }
+  }
+  place = fs::weakly_canonical(place, error);
+  if (error) return out_error(path, error.message());
+  return place;
+}
 
+fs::path part_of(const fs::path& path) {
+  return path.parent_path() / ("." + path.filename().string() + kPartSuffix);
+}
+
+/// File descriptor of the lock of the existing folder `part`; -1 with errno when there is none to
+/// be had: EWOULDBLOCK when a living process holds it.
+int take_lock(const fs::path& part) {
+  const std::string file = part / kLockFile;
+  const int lock = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+  if (lock < 0) return lock;
+  struct stat held {
+  }, there{};
+  if (::flock(lock, LOCK_EX | LOCK_NB) == 0 && ::fstat(lock, &held) == 0 &&
+      ::stat(file.c_str(), &there) == 0) {
+    if (held.st_ino == there.st_ino && held.st_dev == there.st_dev) return lock;
+    errno = ENOENT;  // its owner moved the folder to its place meanwhile
+  }
+  const int why = errno;
+  ::close(lock);
+  errno = why;
+  return -1;
+}
+
+/// Removes what this product writes into a part folder; the lock stays.
+void clear_part(const fs::path& part) {
+  std::error_code ignored;
+  for (const char* name : kRunFiles) fs::remove(part / name, ignored);
+}
+
+/// Removes the part folder whose lock is held, unless there are things of others in it.
+void remove_part(const fs::path& part) {
+  std::error_code ignored;
+  clear_part(part);
+  fs::remove(part / kLockFile, ignored);
+  fs::remove(part, ignored);
+}
+
+/// Removes the part folders in `parent` of processes that were killed.
+void clean_left_overs(const fs::path& parent) {
+  std::error_code error;
+  for (const fs::directory_entry& entry : fs::directory_iterator(parent, error)) {
+    const std::string name = entry.path().filename().string();
+    if (!name.starts_with('.') || !name.ends_with(kPartSuffix)) continue;
+    const int lock = take_lock(entry.path());
+    if (lock < 0) continue;
+    remove_part(entry.path());
+    ::close(lock);
+  }
+}
+
+/// Creates the part folder of `path` and takes its lock.
+Result<int> lock_part(const fs::path& path) {
+  const fs::path part = part_of(path);
+  for (;;) {
+    if (::mkdir(part.c_str(), 0777) != 0 && errno != EEXIST) {
+      return system_error(path, "cannot be created");
+    }
+    const int lock = take_lock(part);
+    if (lock >= 0) return lock;
+    if (errno == EWOULDBLOCK) {
+      return out_error(path, "is being written by another process; allowed: another folder");
+    }
+    if (errno != ENOENT) return system_error(path, "cannot be created");
+  }
+}
+
+}  // namespace
+
+Result<RunFolder> RunFolder::open(const fs::path& path, const RunFolderOptions& options) {
+  const Result<fs::path> place = final_place(path);
+  if (!place) return place.errors();
+  RunFolder folder;
+  folder.path_ = place.value();
+  folder.options_ = options;
+  if (const auto wrong = check_target(folder.path_, options.replace)) return *wrong;
+
+  std::error_code error;
   const fs::path parent = folder.path_.parent_path();
   for (fs::path p = parent; !p.empty() && !fs::exists(p, error); p = p.parent_path()) {
     folder.created_parents_.push_back(p);
   }
-  folder.part_ = beside(folder.path_, ".part-");
   fs::create_directories(parent, error);
-  if (!error) fs::remove_all(folder.part_, error);  // of a killed process that had this number
-  if (!error) fs::create_directory(folder.part_, error);
   if (error) return out_error(folder.path_, "cannot be created: " + error.message());
+  clean_left_overs(parent);
+  const Result<int> lock = lock_part(folder.path_);
+  if (!lock) return lock.errors();
+  folder.lock_ = lock.value();
+  folder.part_ = part_of(folder.path_);
+  clear_part(folder.part_);
+  if (const auto wrong = check_space(folder.path_, options.size)) return *wrong;
+  // Replacing needs to write into the folder itself, not only beside it.
+  if (fs::exists(folder.path_, error) && ::access(folder.path_.c_str(), W_OK | X_OK) != 0) {
+    return system_error(folder.path_, "cannot be written");
+  }
   return folder;
+}
+
+Result<RunFolder> RunFolder::open_next(const fs::path& path, const RunFolderOptions& options) {
+  constexpr int kMostRuns = 10000;  // of one name: nobody has as many
+  for (int number = 1;; ++number) {
+    const fs::path name =
+        number == 1 ? path : fs::path(path.string() + "-" + std::to_string(number));
+    std::error_code error;
+    const bool taken =
+        fs::exists(fs::symlink_status(name, error)) || fs::exists(part_of(name), error);
+    Result<RunFolder> folder = open(name, options);
+    // Where nothing is in the way the next name fails as well.
+    if (folder || !taken || number == kMostRuns) return folder;
+  }
 }
 
 RunFolder::RunFolder(RunFolder&& other) noexcept
     : path_(std::move(other.path_)),
       part_(std::exchange(other.part_, {})),
-      created_parents_(std::exchange(other.created_parents_, {})) {}
+      created_parents_(std::exchange(other.created_parents_, {})),
+      options_(other.options_),
+      lock_(std::exchange(other.lock_, -1)) {}
 
 RunFolder::~RunFolder() {
   std::error_code ignored;
-  if (!part_.empty()) fs::remove_all(part_, ignored);
+  if (!part_.empty()) remove_part(part_);
+  if (lock_ >= 0) ::close(lock_);
   for (const fs::path& parent : created_parents_) fs::remove(parent, ignored);  // only when empty
 }
 
@@ -88,21 +257,52 @@ std::optional<Error> RunFolder::write(const std::string& name, const std::string
 }
 
 std::optional<Error> RunFolder::commit() {
-  if (const auto wrong = check_target(path_)) return wrong;  // it may have changed meanwhile
-  std::error_code error;
-  const bool replaces = is_run(path_);
-  const fs::path old = beside(path_, ".old-");
-  if (replaces) fs::rename(path_, old, error);
-  if (!error) fs::rename(part_, path_, error);
-  if (error) {
-    const std::string message = "cannot be written: " + error.message();
-    if (replaces && !fs::exists(path_, error)) fs::rename(old, path_, error);
-    return out_error(path_, message);
+  // It may have changed meanwhile.
+  if (const auto wrong = check_target(path_, options_.replace)) return wrong;
+  std::vector<std::string> names;
+  for (const char* name : kRunFiles) {
+    if (is_regular(part_ / name) || name == std::string_view(kRecordFile)) names.emplace_back(name);
   }
-  if (replaces) fs::remove_all(old, error);
-  part_.clear();
+  if (auto error = write(kRecordFile, record_text(names))) return error;
+
+  std::error_code error;
+  if (!fs::exists(path_, error) || fs::is_empty(path_, error)) {
+    fs::rename(part_, path_, error);
+    if (error) return out_error(path_, "cannot be written: " + error.message());
+    fs::remove(path_ / kLockFile, error);
+    part_.clear();
+  } else if (auto failed = replace_files(names)) {
+    return failed;
+  }
   created_parents_.clear();
   return std::nullopt;
+}
+
+/// Puts the files `names` of the part folder in the place of those of the earlier run. A process
+/// that is killed meanwhile leaves whole files, all of them in the record.
+std::optional<Error> RunFolder::replace_files(const std::vector<std::string>& names) const {
+  const std::vector<std::string> before = recorded_files(path_);
+  std::vector<std::string> all = names;
+  std::copy_if(before.begin(), before.end(), std::back_inserter(all), [&](const std::string& name) {
+    return std::find(names.begin(), names.end(), name) == names.end();
+  });
+  const auto set_record = [&](const std::vector<std::string>& listed) -> std::optional<Error> {
+    if (auto error = write(kRecordFile, record_text(listed))) return error;
+    std::error_code error;
+    fs::rename(part_ / kRecordFile, path_ / kRecordFile, error);
+    if (error) return out_error(path_, "cannot be written: " + error.message());
+    return std::nullopt;
+  };
+  if (auto error = set_record(all)) return error;
+  std::error_code error;
+  for (const std::string& name : names) {
+    if (name != kRecordFile) fs::rename(part_ / name, path_ / name, error);
+    if (error) return out_error(path_ / name, "cannot be written: " + error.message());
+  }
+  for (const std::string& name : before) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) fs::remove(path_ / name, error);
+  }
+  return set_record(names);
 }
 
 std::optional<Error> write_terrain(const RunFolder& folder, const std::string& text,

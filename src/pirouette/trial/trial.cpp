@@ -8,6 +8,7 @@
 #include "pirouette/controller/spin_controller.hpp"
 #include "pirouette/plant/simulated_world.hpp"
 #include "pirouette/runtime/recording.hpp"
+#include "pirouette/runtime/turn_by_angle.hpp"
 
 namespace pirouette {
 namespace {
@@ -19,14 +20,29 @@ constexpr double kStandDownTime = 1.0;      // s
 constexpr double kTimePerStillTurn = 10.0;  // s
 constexpr double kProgressPeriod = 0.1;     // s, simulated
 constexpr double kMaxDuration = 1e6;        // s, simulated
+constexpr double kLimitShare = 1.5;         // of the time that the command needs
+constexpr double kLimitSlack = 10.0;        // s, on top of that: ramps take theirs
+constexpr double kBrakingShare = 0.5;       // of path.max_yaw_acceleration, at the end of a turn
+constexpr double kStandTime = 1.0;          // s, after a turn by an angle
+constexpr double kPathWindow = 0.3;         // m, about the last nearest point: stays on its branch
 
+bool turns_by_angle(const TrialSetup& setup) { return setup.trial.angle_deg != 0.0; }
+
+/// s, after which the recording ends when all goes well.
 double recorded_time(const TrialSetup& setup) {
   if (setup.path) {
     const double laps = setup.path->closed() ? setup.trial.laps : 1.0;
     return laps * setup.path->length() / setup.motion.v_H.norm();
   }
   const double yaw_rate = std::abs(setup.trial.rate);
+  if (turns_by_angle(setup)) return radians(std::abs(setup.trial.angle_deg)) / yaw_rate;
   return setup.trial.turns * (yaw_rate > 0.0 ? 2.0 * kPi / yaw_rate : kTimePerStillTurn);
+}
+
+/// s, after which it ends whatever was done.
+double time_limit(const TrialSetup& setup) {
+  const double given = setup.trial.time_limit;
+  return given > 0.0 ? given : kLimitShare * recorded_time(setup) + kLimitSlack;
 }
 
 /// When what happens, in control ticks.
@@ -34,8 +50,9 @@ struct Schedule {
   explicit Schedule(const TrialSetup& setup)
       : rate(setup.controller.control.rate),
         command(ticks(setup.controller.gait.stand_time)),
-        record(command + ticks(setup.trial.settle_time)),
-        end(record + ticks(recorded_time(setup))) {}
+        record(command + (turns_by_angle(setup) ? 0 : ticks(setup.trial.settle_time))),
+        limit(record + ticks(time_limit(setup))),
+        due(std::min(limit, record + ticks(recorded_time(setup)))) {}
 
   std::int64_t ticks(double seconds) const { return std::llround(seconds * rate); }
   double seconds(std::int64_t tick) const { return static_cast<double>(tick) / rate; }
@@ -43,19 +60,83 @@ struct Schedule {
   double rate;           ///< Hz
   std::int64_t command;  ///< first tick of the motion
   std::int64_t record;   ///< first recorded tick
-  std::int64_t end;      ///< last tick
+  std::int64_t limit;    ///< last tick whatever was done
+  std::int64_t due;      ///< last tick when what was commanded is done by then
 };
 
-/// Where the CoM should go in the world when the command comes at `p_WG` and `yaw`; absent: a spin.
-std::optional<Path> commanded_path(const TrialSetup& setup, const Vec2& p_WG, double yaw) {
-  const MotionCommand& command = setup.motion;
-  const double speed = command.v_H.norm();
+/// Where the CoM should go in the world when the command comes at its point and `yaw`; absent: a
+/// spin.
+std::optional<Path> commanded_path(const TrialSetup& setup, const CommandedMotion& commanded,
+                                   double yaw) {
+  const Vec2& p_WG = commanded.point;
+  const double speed = commanded.v_H.norm();
   if (speed == 0.0) return std::nullopt;
-  const double heading = yaw + std::atan2(command.v_H.y(), command.v_H.x());
-  if (!setup.path) return Path::arc(p_WG, heading, command.yaw_rate / speed);
+  const double heading = yaw + std::atan2(commanded.v_H.y(), commanded.v_H.x());
+  if (!setup.path) return Path::arc(p_WG, heading, commanded.yaw_rate / speed);
   std::optional<Path> path = setup.path;
   path->start_at(p_WG, heading);
   return path;
+}
+
+/// How much of what was commanded the robot has done since the recording began, by the truth.
+class Progress {
+ public:
+  explicit Progress(const TrialSetup& setup) : setup_(setup) {}
+
+  /// `path`: in the world, absent for a spin; `reference_s`: m along it, of the reference.
+  void begin(const std::optional<Path>& path, const Vec2& p_WG, double yaw, double reference_s) {
+    path_ = &path;
+    start_p_WG_ = p_WG_ = p_WG;
+    start_yaw_ = yaw_ = yaw;
+    if (path) start_s_ = s_ = path->nearest(p_WG, reference_s, kPathWindow);
+  }
+
+  void update(const Vec2& p_WG, double yaw) {
+    if (path_ == nullptr) return;
+    p_WG_ = p_WG;
+    yaw_ = yaw;
+    if (setup_.path) s_ = (*path_)->nearest(p_WG, s_, kPathWindow);
+  }
+
+  /// Share of the laps, turns, angle or distance; absent where nothing was commanded.
+  Number share() const {
+    const double speed = setup_.motion.v_H.norm();
+    if (path_ == nullptr) return 0.0;
+    if (setup_.path) {
+      const double length = setup_.path->length();
+      return (s_ - start_s_) /
+             (setup_.path->closed() ? setup_.trial.laps * length : length - start_s_);
+    }
+    if (turns_by_angle(setup_)) return turned() / radians(setup_.trial.angle_deg);
+    const double yaw_rate = setup_.motion.yaw_rate;
+    if (yaw_rate != 0.0) {
+      return std::copysign(1.0, yaw_rate) * turned() / (2.0 * kPi * setup_.trial.turns);
+    }
+    if (speed == 0.0) return std::nullopt;
+    return (p_WG_ - start_p_WG_).norm() / (speed * recorded_time(setup_));
+  }
+
+  double turned() const { return yaw_ - start_yaw_; }  ///< rad
+
+  bool done() const {
+    const Number done = share();
+    return !done || *done >= kDoneShare;
+  }
+
+ private:
+  const TrialSetup& setup_;
+  const std::optional<Path>* path_ = nullptr;  ///< nullptr: the recording has not begun
+  Vec2 start_p_WG_ = Vec2::Zero(), p_WG_ = Vec2::Zero();
+  double start_yaw_ = 0.0, yaw_ = 0.0;
+  double start_s_ = 0.0, s_ = 0.0;
+};
+
+/// Takes away what compares with a steady motion: a turn by an angle ramps and brakes.
+void leave_out_steady_motion(Metrics& m) {
+  m.yaw_rate_error = std::nullopt;
+  m.path.along_track_mean_mm = std::nullopt;
+  m.com.body_bias_mm_s = m.com.body_bias_x_mm_s = m.com.body_bias_y_mm_s = std::nullopt;
+  m.com.bias_circle_mm = std::nullopt;
 }
 
 bool has_fallen(const PlantTruth& truth, double standing_height) {
@@ -100,6 +181,7 @@ class Trial final : public MotionSource, public Observer {
       : setup_(setup),
         options_(options),
         schedule_(setup),
+        progress_(setup),
         plant_(std::move(robot.plant)),
         controller_(std::move(robot.controller)) {
     controller_.reset(start_pose());
@@ -107,6 +189,10 @@ class Trial final : public MotionSource, public Observer {
     const MotionCommand& command = setup_.motion;
     commanded_ = {command.point.value_or(Vec2::Zero()), command.v_H, command.yaw_rate,
                   command.hold_heading, std::nullopt};
+    if (turns_by_angle(setup_) && setup_.trial.angle_deg * command.yaw_rate < 0.0) {
+      commanded_.v_H = -command.v_H;
+      commanded_.yaw_rate = -command.yaw_rate;
+    }
     yaw_.reset(rpy_from_rotation(start_pose().R_WB).yaw);
   }
 
@@ -128,7 +214,9 @@ class Trial final : public MotionSource, public Observer {
     const LoopEnd end = pirouette::run(world, controller_, *this, observers, options_.pacer);
     TrialResult result;
     result.interrupted = end == LoopEnd::kObserver;
-    if (!result.interrupted) result.metrics = summarise();
+    result.metrics = summarise();
+    result.metrics.interrupted = result.interrupted;
+    result.completed = !fall_tick_ && !result.interrupted && is_done();
     std::optional<Error> error;
     if (whole_run) {
       error = whole_run->finish();
@@ -142,9 +230,9 @@ class Trial final : public MotionSource, public Observer {
 
   std::optional<MotionCommand> next(std::int64_t tick, const PlantTruth* truth) override {
     if (fall_tick_) return while_falling(tick);
-    if (tick > schedule_.end) {
+    if (tick > schedule_.limit || (tick > schedule_.due && is_done())) {
       if (is_stood_down(controller_.status())) {
-        fall_tick_ = schedule_.end;
+        fall_tick_ = tick_;
         stand_down_delay_ = 0.0;
       }
       return std::nullopt;
@@ -156,6 +244,12 @@ class Trial final : public MotionSource, public Observer {
     }
     yaw_.update(rpy_from_rotation(truth->base.R_WB).yaw);
     if (tick == schedule_.command) begin_motion(*truth);
+    if (tick >= schedule_.command && turn_) {
+      const double turned = controller_.estimate()->rpy.yaw - believed_start_yaw_;
+      last_command_ = turn_->update(turned, 1.0 / schedule_.rate);
+      if (turn_->done()) ++ticks_since_turn_;
+      return last_command_;
+    }
     return command_of(tick);
   }
 
@@ -176,7 +270,14 @@ class Trial final : public MotionSource, public Observer {
     return {start.p_WB, start.R_WB};
   }
 
+  /// The turns, laps or distance commanded are done; after a turn by an angle the robot stands.
+  bool is_done() const {
+    if (turn_) return ticks_since_turn_ > schedule_.ticks(kStandTime);
+    return progress_.done();
+  }
+
   MotionCommand command_of(std::int64_t tick) const {
+    if (turn_ && tick >= schedule_.command) return last_command_;
     return tick < schedule_.command ? MotionCommand{} : setup_.motion;
   }
 
@@ -195,8 +296,11 @@ class Trial final : public MotionSource, public Observer {
     const MotionCommand& command = setup_.motion;
     if (!command.point) commanded_.point = truth.p_WG.head<2>();
     command_yaw_ = yaw_.value();
-    commanded_.path =
-        commanded_path(setup_, commanded_.point, command.heading.value_or(command_yaw_));
+    commanded_.path = commanded_path(setup_, commanded_, command.heading.value_or(command_yaw_));
+    if (!turns_by_angle(setup_)) return;
+    turn_.emplace(radians(setup_.trial.angle_deg), command,
+                  kBrakingShare * setup_.controller.path.max_yaw_acceleration);
+    believed_start_yaw_ = controller_.estimate()->rpy.yaw;
   }
 
   bool gave_up() {
@@ -208,6 +312,10 @@ class Trial final : public MotionSource, public Observer {
     const TickTrace& trace = controller_.trace();
     if (tick_ >= schedule_.record) {
       record_.add(truth, yaw_.value(), trace.state, trace.path.arc_length);
+      if (tick_ == schedule_.record) {
+        progress_.begin(commanded_.path, truth.p_WG.head<2>(), yaw_.value(), trace.path.arc_length);
+      }
+      progress_.update(truth.p_WG.head<2>(), yaw_.value());
     }
     constexpr double kRounding = 1e-9;
     const double row_time = static_cast<double>(rows_) / setup_.trial.trace_rate;
@@ -218,11 +326,11 @@ class Trial final : public MotionSource, public Observer {
   }
 
   bool report(const PlantTruth& truth) {
-    const bool due = tick_ % schedule_.ticks(kProgressPeriod) == 0 || tick_ == schedule_.end;
+    const bool due = tick_ % schedule_.ticks(kProgressPeriod) == 0 || tick_ == schedule_.due;
     if (!options_.progress || !due) return true;
     TrialProgress progress;
     progress.time = schedule_.seconds(tick_);
-    progress.duration = schedule_.seconds(schedule_.end);
+    progress.duration = schedule_.seconds(std::max(tick_, schedule_.due));
     progress.real_time_factor = progress.time / watch_.seconds();
     if (tick_ >= schedule_.command) {
       const double direction = setup_.motion.yaw_rate < 0.0 ? -1.0 : 1.0;
@@ -236,6 +344,11 @@ class Trial final : public MotionSource, public Observer {
     const double wall = watch_.seconds();
     const double simulated = schedule_.seconds(tick_);
     Metrics m = evaluate(record_, commanded_, schedule_.rate);
+    m.done = progress_.share();
+    if (turns_by_angle(setup_)) {
+      m.angle_error_deg = progress_.turned() * 180.0 / kPi - setup_.trial.angle_deg;
+      leave_out_steady_motion(m);
+    }
     m.fell = fall_tick_.has_value();
     if (fall_tick_) m.fall_time_s = schedule_.seconds(*fall_tick_);
     m.stand_down_delay_s = stand_down_delay_;
@@ -252,11 +365,16 @@ class Trial final : public MotionSource, public Observer {
   const TrialSetup& setup_;
   const TrialOptions& options_;
   Schedule schedule_;
+  Progress progress_;
   Plant plant_;
   SpinController controller_;
   CommandedMotion commanded_;
   YawUnwrapper yaw_;
   double command_yaw_ = 0.0;
+  std::optional<TurnByAngle> turn_;
+  double believed_start_yaw_ = 0.0;  ///< rad, where that turn began, as the controller believed
+  MotionCommand last_command_;       ///< of that turn
+  std::int64_t ticks_since_turn_ = 0;
   MotionRecord record_;
   std::vector<double> tick_us_, mpc_us_, wbc_us_;
   std::int64_t tick_ = 0;  ///< the last one before a fall
@@ -268,6 +386,11 @@ class Trial final : public MotionSource, public Observer {
 };
 
 }  // namespace
+
+double expected_duration(const TrialSetup& setup) {
+  const Schedule schedule(setup);
+  return schedule.seconds(schedule.due);
+}
 
 Errors check_trial(const TrialSetup& setup) {
   const Result<Robot> robot = build(setup);

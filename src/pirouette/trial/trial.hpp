@@ -54,20 +54,30 @@ struct TrialOptions {
 
 struct TrialResult {
   Metrics metrics;
-  bool interrupted = false;  ///< progress returned false
+  bool interrupted = false;  ///< progress returned false; metrics are of the part until then
   bool recorded = false;     ///< a recording was written
+  /// What was commanded was done before run.time_limit, by kDoneShare of it at least.
+  bool completed = false;
 };
 
 /// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, a
 /// length of more than 10^6 s.
 Errors check_trial(const TrialSetup& setup);
 
-/// Stands for gait.stand_time, then commands the motion; records after settle_time until the turns
-/// are due; without a yaw rate each turn counts 10 s, and a path is walked `laps` times, once when
-/// open. Ends early when the robot falls: the trunk leans more
-/// than 1 rad from the terrain's normal, the CoM is lower than 0.1 m (small robots: 0.4 of its
-/// height when standing) above ground, the truth is not finite, or the controller has stood down
-/// for 1 s. The same setup gives the same rows bit for bit.
+/// s, simulated, from standing to the end when all goes well.
+double expected_duration(const TrialSetup& setup);
+
+/// Share of what was commanded that counts as done.
+inline constexpr double kDoneShare = 0.98;
+
+/// Stands for gait.stand_time, then commands the motion; records after settle_time for as long as
+/// the turns take at the commanded rate (without one 10 s each), or the laps of a path, which is
+/// walked once when open; longer, until kDoneShare of them are done, but no longer than
+/// run.time_limit. With run.angle_deg it turns by that angle, stands and records it all.
+/// Interrupted, it returns what was measured until then. Ends early when the robot falls: the trunk
+/// leans more than 1 rad from the terrain's normal, the CoM is lower than 0.1 m (small robots: 0.4
+/// of its height when standing) above ground, the truth is not finite, or the controller has stood
+/// down for 1 s. The same setup gives the same rows bit for bit.
 Result<TrialResult> run_trial(const TrialSetup& setup, const TrialOptions& options = {});
 
 }  // namespace pirouette

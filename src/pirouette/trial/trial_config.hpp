@@ -16,6 +16,8 @@ struct TrialConfig {
   double path_speed = 0.0;
   double laps = 2.0;
   double turns = 8.0;
+  double angle_deg = 0.0;
+  double time_limit = 0.0;
   double settle_time = 5.0;
   std::int64_t seed = 1;
   bool fixed_point = false;
@@ -38,6 +40,12 @@ struct TrialConfig {
     v(s.laps, "laps", "1", Range{0.01, 1e5}, "Laps of a closed run.path to record after settling.");
     v(s.turns, "turns", "1", Range{0.01, 1e5},
       "Turns to record after settling; 10 s each without a yaw rate.");
+    v(s.angle_deg, "angle_deg", "deg", Range{-36000.0, 36000.0},
+      "Turn by this angle at run.rate, positive to the left, and stand; 0: turn on for run.turns.");
+    v(s.time_limit, "time_limit", "s", Range{0.0, 1e6},
+      "Longest recorded time, whether turns, laps or angle are done by then or not; 0: 10 s more "
+      "than "
+      "1.5 times what they need at the commanded speed.");
     v(s.settle_time, "settle_time", "s", Range{0.0, 600.0},
       "Time from the command to the first recorded sample.");
     v(s.seed, "seed", "1", Range{0, 9e15}, "Seed of noise, biases and terrain.");
