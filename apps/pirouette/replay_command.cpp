@@ -30,22 +30,8 @@ Result<SpinController> controller_of(const fs::path& folder) {
   return controller;
 }
 
-const char* ending(ControllerStatus status) {
-  switch (status) {
-    case ControllerStatus::kStanding:
-      return "standing";
-    case ControllerStatus::kWalking:
-      return "walking";
-    case ControllerStatus::kFallen:
-      return "stood down: fallen";
-    case ControllerStatus::kBadInput:
-      return "stood down: bad input";
-    case ControllerStatus::kSolverFailed:
-      return "stood down: solver failed";
-    case ControllerStatus::kBadCommand:
-      return "stood down: bad command";
-  }
-  return "";
+std::string ending(ControllerStatus status) {
+  return (is_stood_down(status) ? "stood down: " : "") + std::string(words(status));
 }
 
 }  // namespace
@@ -83,7 +69,7 @@ int ReplayCommand::run() const {
   std::printf("Replayed %lld ticks", static_cast<long long>(replayed.ticks));
   if (!ticks.empty()) {
     std::printf(" from %.3f to %.3f s: equal bit by bit; at the end %s", ticks.front().time,
-                ticks.back().time, ending(replayed.status));
+                ticks.back().time, ending(replayed.status).c_str());
   }
   std::printf("\n");
   return kDone;

@@ -91,6 +91,9 @@ int verdict(const Config& config, const TrialResult& trial, const std::string& f
     return kSignal + interrupt_signal();
   }
   if (m.fell) {
+    if (!trial.stood_down.empty()) {
+      std::cerr << "the controller stood down: " << trial.stood_down << "\n";
+    }
     std::cerr << "the robot fell: what went in and out before is in " << folder << "/"
               << kRecordingFile << "; pirouette replay " << folder << "\n";
     return kFell;

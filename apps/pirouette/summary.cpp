@@ -119,6 +119,10 @@ void add_motion(Table& table, const Metrics& m) {
                                      shown(m.acceleration.y_variance, "(m/s^2)^2"));
   table.row("", "roll " + shown(m.acceleration.roll_variance, "(rad/s^2)^2") + ", pitch " +
                     shown(m.acceleration.pitch_variance, "(rad/s^2)^2"));
+  if (m.contact.dropped_flags > 0) {
+    table.row("contact flags", "of " + std::to_string(m.contact.dropped_flags) +
+                                   " feet make no sense: the schedule stands in");
+  }
   table.row("estimator error", shown(m.estimator.position_error_mm, "mm") + ", yaw " +
                                    shown(m.estimator.yaw_error_rad, "mrad", 3, 1e3));
 }

@@ -138,7 +138,9 @@ void define_joint_command(nb::module_& module) {
       .value("FALLEN", ControllerStatus::kFallen)
       .value("BAD_INPUT", ControllerStatus::kBadInput)
       .value("SOLVER_FAILED", ControllerStatus::kSolverFailed)
-      .value("BAD_COMMAND", ControllerStatus::kBadCommand);
+      .value("BAD_COMMAND", ControllerStatus::kBadCommand)
+      .value("CHECK_FAILED", ControllerStatus::kCheckFailed)
+      .value("GYRO_AGAINST_LEGS", ControllerStatus::kGyroAgainstLegs);
 
   nb::class_<JointCommand> command(
       module, "JointCommand",

@@ -38,7 +38,7 @@ class Standing {
   }
   void find_contacts() {
     contacts = localization.find_contacts(
-        {sensors.foot_contact, encoder_stuck, out.state, out.feet, gait, plane, ground});
+        {sensors.foot_contact, encoder_stuck, out.state, out.feet, gait, plane, ground}, kTick);
   }
   void tick() {
     sensors.time += kTick;
@@ -88,7 +88,7 @@ TEST(Localization, WrongFlagsThatDoNotLastAreIgnoredHoweverMany) {
   config.estimation.contact_debounce = 3;
   Standing robot(config);
   for (int i = 0; i < 3; ++i) robot.measured(Leg::kRR, true);
-  for (int i = 0; i < 300; ++i) EXPECT_TRUE(robot.measured(Leg::kRR, i % 3 == 0)) << i;
+  for (int i = 0; i < 140; ++i) EXPECT_TRUE(robot.measured(Leg::kRR, i % 3 == 0)) << i;
   EXPECT_FALSE(robot.measured(Leg::kRR, false) && robot.measured(Leg::kRR, false));
 }
 

@@ -152,6 +152,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(NoAllocation, StandingDownTakesNothingFromTheHeapEither) {
   Config config;
+  config.safety.self_check = SelfCheckMode::kNone;
   config.joint.kp_stance = std::nan("");
   ClosedLoop loop(config);
   const SensorReading sensors = loop.plant.sense();

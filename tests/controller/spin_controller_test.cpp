@@ -12,6 +12,13 @@
 namespace pirouette {
 namespace {
 
+/// Without the self-check, so that the robot stands and walks at once.
+Config unchecked() {
+  Config config;
+  config.safety.self_check = SelfCheckMode::kNone;
+  return config;
+}
+
 using test::ClosedLoop;
 using test::equal;
 using test::is_finite;
@@ -124,7 +131,7 @@ TEST(SpinController, BridgesAFewBadReadingsOfAnySensor) {
 }
 
 TEST(SpinController, TreatsABadCommandLikeABadReading) {
-  const Config config;
+  const Config config = unchecked();
   ClosedLoop loop(config);
   loop.run(0.2, stand_still());
   loop.run(0.5, spin(0.7));
@@ -182,7 +189,7 @@ TEST(SpinController, DoesNotStartOnABadReading) {
 }
 
 TEST(SpinController, StandsDownWhenTheTrunkTiltsTooFar) {
-  Config config;
+  Config config = unchecked();
   config.estimation.source = EstimatorSource::kTruth;
   for (const double angle : {config.safety.max_tilt - 0.05, config.safety.max_tilt + 0.05}) {
     ClosedLoop loop(config);
@@ -200,7 +207,7 @@ TEST(SpinController, StandsDownWhenTheTrunkTiltsTooFar) {
 }
 
 TEST(SpinController, StandsDownWhenTheRobotHasSunk) {
-  const Config config;
+  const Config config = unchecked();
   ClosedLoop loop(config);
   loop.run(0.2, stand_still());
   for (int i = 0; i < 1000 && !is_stood_down(loop.controller.status()); ++i) {
@@ -213,7 +220,7 @@ TEST(SpinController, StandsDownWhenTheRobotHasSunk) {
 }
 
 TEST(SpinController, StandsDownWhenKnockedOver) {
-  const Config config;
+  const Config config = unchecked();
   ClosedLoop loop(config);
   loop.run(0.2, stand_still());
   loop.plant.push(Vec3(0.0, 6.0, 1.5));
@@ -237,7 +244,7 @@ int ticks_until_stood_down(const Config& config, ControllerStatus expected) {
 }
 
 TEST(SpinController, StandsDownWhenNoForcesCanBeFound) {
-  Config config;
+  Config config = unchecked();
   config.mpc.min_normal_force = 100.0;
   config.mpc.max_normal_force = 50.0;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kSolverFailed),
@@ -245,7 +252,7 @@ TEST(SpinController, StandsDownWhenNoForcesCanBeFound) {
 }
 
 TEST(SpinController, StandsDownWhenWholeBodyControlFailsAlthoughTheMpcDoesNot) {
-  Config config;
+  Config config = unchecked();
   config.mpc.ticks_per_solve = 1;
   config.wbc.weight_acceleration = kNan;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kSolverFailed),
@@ -253,13 +260,13 @@ TEST(SpinController, StandsDownWhenWholeBodyControlFailsAlthoughTheMpcDoesNot) {
 }
 
 TEST(SpinController, StandsDownRatherThanSendACommandThatIsNotFinite) {
-  Config config;
+  Config config = unchecked();
   config.joint.kp_stance = kNan;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kBadCommand), 1);
 }
 
 TEST(SpinController, StandsAndTrotsOnTheSpotWithoutContactSensors) {
-  Config config;
+  Config config = unchecked();
   config.plant.sensors.contact_flags = false;
   ClosedLoop loop(config);
   ASSERT_FALSE(loop.plant.sense().foot_contact.has_value());

@@ -28,6 +28,7 @@ MEASURED = {
     "acceleration.y_variance": ("acceleration y, variance", "(m/s²)²"),
     "acceleration.roll_variance": ("acceleration roll, variance", "(rad/s²)²"),
     "acceleration.pitch_variance": ("acceleration pitch, variance", "(rad/s²)²"),
+    "contact.dropped_flags": ("feet whose contact flag is not believed", ""),
     "estimator.position_error_mm": ("estimator error", "mm"),
     "estimator.yaw_error_rad": ("estimator error, yaw", "rad"),
 }

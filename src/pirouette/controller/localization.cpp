@@ -20,6 +20,7 @@ void Localization::reset(const BasePose& start) {
   yaw_.reset(rpy_from_rotation(start.R_WB).yaw);
   landed_early_ = {};
   for (ContactDebounce& flag : flags_) flag.reset();
+  for (FlagTrust& trust : flag_trust_) trust.reset();
 }
 
 RobotState Localization::start(const BasePose& start, const PerLeg<Vec3>& joint_position) {
@@ -172,27 +173,36 @@ Vec3 Localization::contact_normal(const ContactInput& in) const {
   return in.last_ground.stepped ? Vec3(Vec3::UnitZ()) : in.last_plane.normal();
 }
 
-/// The foot's contact flag, debounced; without contact sensing the schedule's.
-bool Localization::touches(const ContactInput& in, Leg leg) noexcept {
+PerLeg<bool> Localization::dropped_flags() const noexcept {
+  PerLeg<bool> dropped{};
+  for (const Leg leg : kLegs) dropped[leg] = !flag_trust_[leg].believed();
+  return dropped;
+}
+
+/// The foot's contact flag, debounced; the schedule's where there is none to believe.
+bool Localization::touches(const ContactInput& in, Leg leg, bool flag_believed) noexcept {
   ContactDebounce& flag = flags_[leg];
   // Nobody knows where the foot of such a leg is.
   if (in.encoder_stuck[leg]) return flag.set(false);
-  if (!in.foot_contact) return flag.set(in.gait.leg[leg].stance);
+  if (!flag_believed) return flag.set(in.gait.leg[leg].stance);
   return flag.update((*in.foot_contact)[leg]);
 }
 
-FootContacts Localization::find_contacts(const ContactInput& in) noexcept {
+FootContacts Localization::find_contacts(const ContactInput& in, double dt) noexcept {
   const RobotState& state = in.state;
   const Vec3 n_W = contact_normal(in);
   FootContacts out;
   for (const Leg leg : kLegs) {
     FootContact& contact = out[leg];
     const LegPhase& phase = in.gait.leg[leg];
-    contact.measured = touches(in, leg);
+    const bool flag_believed =
+        in.foot_contact &&
+        flag_trust_[leg].update((*in.foot_contact)[leg], phase, in.gait.walking, dt);
+    contact.measured = touches(in, leg, flag_believed);
     const bool late_in_swing =
         !phase.stance && phase.progress >= config_.gait.early_contact_progress;
     landed_early_[leg] =
-        late_in_swing && (landed_early_[leg] || (in.foot_contact.has_value() && contact.measured));
+        late_in_swing && (landed_early_[leg] || (flag_believed && contact.measured));
     contact.in_contact = phase.stance || landed_early_[leg];
     contact.n_W = n_W;
     contact.p_WC = foot_.contact_point(state.p_WF[leg], n_W);

@@ -3,6 +3,7 @@
 
 #include "pirouette/controller/contact_debounce.hpp"
 #include "pirouette/controller/controller_config.hpp"
+#include "pirouette/controller/flag_trust.hpp"
 #include "pirouette/estimation/attitude_filter.hpp"
 #include "pirouette/estimation/leg_odometry_filter.hpp"
 #include "pirouette/estimation/spin_creep.hpp"
@@ -63,7 +64,10 @@ class Localization {
   /// The robot's state; also brings `model` to it.
   LocalizationOutput estimate(const LocalizationInput& in, RobotModel& model, double dt) noexcept;
 
-  FootContacts find_contacts(const ContactInput& in) noexcept;
+  FootContacts find_contacts(const ContactInput& in, double dt) noexcept;
+
+  /// Feet whose contact flag is not believed: the schedule stands in for it.
+  PerLeg<bool> dropped_flags() const noexcept;
 
   const RollingFoot& foot() const { return foot_; }
 
@@ -71,8 +75,8 @@ class Localization {
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
     auto& [config, legs, foot, attitude_filter, odometry_filter, creep, tilt_bias, yaw,
-           landed_early, flags] = self;
-    visit(attitude_filter, odometry_filter, creep, tilt_bias, yaw, landed_early, flags);
+           landed_early, flags, flag_trust] = self;
+    visit(attitude_filter, odometry_filter, creep, tilt_bias, yaw, landed_early, flags, flag_trust);
   }
 
  private:
@@ -92,7 +96,7 @@ class Localization {
   Vec3 joint_feedback_force(const LocalizationInput& in, Leg leg) const;
   CreepInput creep_input(const LocalizationInput& in) const;
   Vec3 contact_normal(const ContactInput& in) const;
-  bool touches(const ContactInput& in, Leg leg) noexcept;
+  bool touches(const ContactInput& in, Leg leg, bool flag_believed) noexcept;
 
   ControllerConfig config_;
   PerLeg<LegGeometry> legs_;
@@ -104,6 +108,7 @@ class Localization {
   YawUnwrapper yaw_;
   PerLeg<bool> landed_early_{};
   PerLeg<ContactDebounce> flags_;
+  PerLeg<FlagTrust> flag_trust_{};
 };
 
 }  // namespace pirouette

@@ -1,11 +1,21 @@
 // When the controller gives up.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "pirouette/base/fields.hpp"
 
 namespace pirouette {
 
+enum class SelfCheckMode { kNone, kStill, kTurn };
+template <>
+struct EnumNames<SelfCheckMode> {
+  static constexpr std::array<std::string_view, 3> kNames = {"none", "still", "turn"};
+};
+
 struct SafetyConfig {
+  SelfCheckMode self_check = SelfCheckMode::kTurn;
   double max_tilt = 0.8;
   double min_height_share = 0.4;
   int max_bad_readings = 10;
@@ -17,6 +27,12 @@ struct SafetyConfig {
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
+    v(s.self_check, "self_check",
+      "Before the first step, for 0.9 s of standing: still: clock, joint angles, accelerometer and "
+      "the "
+      "torque that holds the robot are checked; turn: and the trunk turns by 0.02 rad about each "
+      "axis, "
+      "which gyro and legs have to agree about; none: nothing is checked.");
     v(s.max_tilt, "max_tilt", "rad", Range{0.1, 3.2},
       "The robot counts as fallen when the trunk's axis leaves the ground normal by more.");
     v(s.min_height_share, "min_height_share", "1", Range{0.0, 1.0},
@@ -34,7 +50,8 @@ struct SafetyConfig {
     v(s.max_accelerometer_step, "max_accelerometer_step", "m/s^2", Range{0.1, 1e6},
       "The same for its accelerometer.");
     v(s.max_repeated_samples, "max_repeated_samples", "ticks", Range{0, 100000},
-      "An IMU that repeats its sample to the last bit while walking is dead after this many, and "
+      "A gyro or an accelerometer that repeats its sample to the last bit while walking is dead "
+      "after this many, and "
       "the controller stands down.");
     v(s.max_blind_travel, "max_blind_travel", "rad", Range{0.001, 100.0},
       "An encoder that repeats its angle to the last bit over this much commanded travel is stuck: "

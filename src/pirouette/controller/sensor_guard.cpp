@@ -55,7 +55,8 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
   started_ = true;
   const auto blind_legs =
       std::count(input_.encoder_stuck.begin(), input_.encoder_stuck.end(), true);
-  return repeated_samples_ <= config_.max_repeated_samples && blind_legs <= 1;
+  return std::max(gyro_repeats_, accelerometer_repeats_) <= config_.max_repeated_samples &&
+         blind_legs <= 1;
 }
 
 bool SensorGuard::is_outlier(const SensorReading& sensors) const noexcept {
@@ -68,9 +69,11 @@ void SensorGuard::watch_imu(const SensorReading& sensors, bool walking) noexcept
   // What stays there for long is no spike: the robot was hit.
   const bool spike = is_outlier(sensors) && outliers_ < config_.max_bad_readings;
   outliers_ = spike ? outliers_ + 1 : 0;
-  const bool repeated =
-      sensors.w_WB_B == last_raw_.w_WB_B && sensors.specific_force_B == last_raw_.specific_force_B;
-  repeated_samples_ = walking && repeated ? repeated_samples_ + 1 : 0;
+  const auto count = [&](int& repeats, const Vec3& now, const Vec3& before) {
+    repeats = walking && now == before ? repeats + 1 : 0;
+  };
+  count(gyro_repeats_, sensors.w_WB_B, last_raw_.w_WB_B);
+  count(accelerometer_repeats_, sensors.specific_force_B, last_raw_.specific_force_B);
 }
 
 void SensorGuard::watch_encoders(const SensorReading& sensors, const JointCommand& sent) noexcept {

@@ -17,7 +17,8 @@ struct GuardedInput {
 /// Bridges what fails for a moment, and tells when a failure lasts:
 ///  - a value that is not finite: the last good inputs stand in, one control period on;
 ///  - an IMU sample that no trunk could follow: the one before stands in;
-///  - an IMU that repeats itself to the last bit while the robot walks, which a live one does not;
+///  - a gyro or an accelerometer that repeats itself to the last bit while the robot walks, which a
+///    live one does not;
 ///  - an encoder that repeats itself to the last bit while its joint is commanded to move.
 class SensorGuard {
  public:
@@ -35,9 +36,10 @@ class SensorGuard {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, period, input, last_raw, started, bad_inputs, outliers, repeated_samples,
-           blind_travel] = self;
-    visit(input, last_raw, started, bad_inputs, outliers, repeated_samples, blind_travel);
+    auto& [config, period, input, last_raw, started, bad_inputs, outliers, gyro_repeats,
+           accelerometer_repeats, blind_travel] = self;
+    visit(input, last_raw, started, bad_inputs, outliers, gyro_repeats, accelerometer_repeats,
+          blind_travel);
   }
 
  private:
@@ -50,9 +52,10 @@ class SensorGuard {
   GuardedInput input_;
   SensorReading last_raw_;
   bool started_ = false;
-  int bad_inputs_ = 0;           ///< in a row
-  int outliers_ = 0;             ///< in a row
-  int repeated_samples_ = 0;     ///< of the IMU, in a row
+  int bad_inputs_ = 0;    ///< in a row
+  int outliers_ = 0;      ///< in a row
+  int gyro_repeats_ = 0;  ///< samples in a row
+  int accelerometer_repeats_ = 0;
   PerLeg<Vec3> blind_travel_{};  ///< rad, commanded since the encoder's last change
 };
 

@@ -12,11 +12,13 @@
 #include "pirouette/controller/force_planner.hpp"
 #include "pirouette/controller/gait_timing.hpp"
 #include "pirouette/controller/ground_sense.hpp"
+#include "pirouette/controller/gyro_watch.hpp"
 #include "pirouette/controller/joint_control.hpp"
 #include "pirouette/controller/lift_off_points.hpp"
 #include "pirouette/controller/localization.hpp"
 #include "pirouette/controller/motion_planner.hpp"
 #include "pirouette/controller/sensor_guard.hpp"
+#include "pirouette/controller/standing_check.hpp"
 #include "pirouette/controller/tick_clock.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "pirouette/model/robot_model.hpp"
@@ -82,7 +84,7 @@ ComPlannerInput com_planner_input(const RobotState& state, const GaitPhase& gait
 }
 
 /// Counts up when what a snapshot holds changes without a change of its size.
-constexpr std::uint64_t kSnapshotVersion = 1;
+constexpr std::uint64_t kSnapshotVersion = 2;
 constexpr std::size_t kHeaderSize = 2 * sizeof(std::uint64_t);  ///< version and checksum
 
 std::uint64_t checksum(std::span<const std::byte> content) {
@@ -103,6 +105,7 @@ struct SpinController::Impl {
         stance(nominal_stance(c.body, model)),
         tick_clock(1.0 / c.control.rate),
         sensor_guard(c.safety, 1.0 / c.control.rate),
+        standing_check(c.safety, 1.0 / c.control.rate, model.mass(), stance.p_BG, model.legs()),
         localization(c, model.legs()),
         gait_timing(c.gait),
         ground_sense(c.terrain, model.legs()[Leg::kFR].foot_radius),
@@ -124,10 +127,11 @@ struct SpinController::Impl {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [configuration, robot, height, nominal, clock, guard, localization_, timing_, lift_off,
-           ground, motion, feet, com, forces, joints, start_, started_, last_, cost] = self;
-    visit(clock, guard, localization_, timing_, lift_off, ground, motion, com, forces, joints,
-          start_, started_, last_);
+    auto& [configuration, robot, height, nominal, clock, guard, check, gyro, localization_, timing_,
+           lift_off, ground, motion, feet, com, forces, joints, start_, started_, last_, cost] =
+        self;
+    visit(clock, guard, check, gyro, localization_, timing_, lift_off, ground, motion, com, forces,
+          joints, start_, started_, last_);
   }
 
   BodyReference reference(const MotionPlan& motion, const ComPlan& com_plan,
@@ -142,6 +146,8 @@ struct SpinController::Impl {
 
   TickClock tick_clock;
   SensorGuard sensor_guard;
+  StandingCheck standing_check;
+  GyroWatch gyro_watch;
   Localization localization;
   GaitTiming gait_timing;
   LiftOffPoints lift_off_points;
@@ -165,6 +171,8 @@ void SpinController::Impl::reset(const BasePose& pose) {
   timing = TickTiming{};
   tick_clock.reset();
   sensor_guard.reset();
+  standing_check.reset();
+  gyro_watch.reset();
   localization.reset(pose);
   gait_timing.reset();
   motion_planner.reset();
@@ -213,13 +221,13 @@ void SpinController::Impl::stand_down(ControllerStatus why) {
 }
 
 const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
-                                               const MotionCommand& asked) noexcept {
+                                               const MotionCommand& wanted) noexcept {
   if (is_stood_down(last.status)) return last.command;
-  if (!sensor_guard.update(reading, asked, last.command, last.gait.walking)) {
+  if (!sensor_guard.update(reading, wanted, last.command, last.gait.walking)) {
     stand_down(ControllerStatus::kBadInput);
     return last.command;
   }
-  const auto& [sensors, command, encoder_stuck] = sensor_guard.input();
+  const auto& [sensors, asked, encoder_stuck] = sensor_guard.input();
   const double dt = tick_clock.update(sensors.time);
   if (!started) start_from(sensors);
 
@@ -227,6 +235,12 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
       localization.estimate({sensors, last.state, last.contacts, last.gait, last.plane, last.ground,
                              last.wbc.f_W, last.command},
                             model, dt);
+  if (standing_check.state() == SelfCheck::kRunning) {
+    standing_check.update({sensors, feet, last.command});
+  }
+  const SelfCheck self_check = standing_check.state();
+  // No step before it has passed.
+  const MotionCommand command = self_check == SelfCheck::kRunning ? MotionCommand{} : asked;
   const std::optional<double> last_path_yaw_rate =
       motion_planner.follows_path() ? std::optional(last.path.yaw_rate) : std::nullopt;
   const auto [gait, recovering] =
@@ -234,7 +248,9 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
                           last.gait.walking, last.ground.stepped},
                          dt);
   const FootContacts contacts = localization.find_contacts(
-      {sensors.foot_contact, encoder_stuck, state, feet, gait, last.plane, last.ground});
+      {sensors.foot_contact, encoder_stuck, state, feet, gait, last.plane, last.ground}, dt);
+  const bool gyro_agrees =
+      !gait.walking || gyro_watch.update(sensors.w_WB_B, feet, contacts, encoder_stuck, dt);
   const PerLeg<Vec3>& p_WF_liftoff = lift_off_points.update(contacts, state.p_WF);
   const auto [plane, ground, remembered_treads] = ground_sense.update({contacts, gait, state}, dt);
   const MotionPlan motion = motion_planner.update({command, state, sensors.aid}, dt);
@@ -256,9 +272,11 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
   last = {.sensors = sensors,
           .encoder_stuck = encoder_stuck,
           .status = gait.walking ? ControllerStatus::kWalking : ControllerStatus::kStanding,
+          .self_check = self_check,
           .state = state,
           .feet = feet,
           .contacts = contacts,
+          .flag_dropped = localization.dropped_flags(),
           .plane = plane,
           .ground = ground,
           .remembered_treads = remembered_treads,
@@ -278,12 +296,19 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
           .wbc = wbc,
           .command = joints};
 
+  if (self_check == SelfCheck::kRunning) {
+    // Nothing of this tick is trusted yet but the joint angles.
+    last.command = standing_check.command();
+    return last.command;
+  }
   if (!finite) stand_down(ControllerStatus::kBadCommand);
   if (std::max(force_planner.failures(), joint_control.failures()) >
       config.safety.max_solver_failures) {
     stand_down(ControllerStatus::kSolverFailed);
   }
+  if (!gyro_agrees) stand_down(ControllerStatus::kGyroAgainstLegs);
   if (has_fallen(state, plane)) stand_down(ControllerStatus::kFallen);
+  if (has_failed(self_check)) stand_down(ControllerStatus::kCheckFailed);
   return last.command;
 }
 

@@ -83,6 +83,7 @@ struct AccelerationMetrics {
 
 struct ContactMetrics {
   Number slip_mean_mm_s;
+  std::int64_t dropped_flags = 0;  ///< set by the trial
 };
 
 struct EstimatorMetrics {
@@ -252,6 +253,9 @@ void Metrics::fields(Self& m, Visit&& v) {
 
   v(m.contact.slip_mean_mm_s, "contact.slip_mean_mm_s", "mm/s",
     "true speed of the feet's material points at the contact, mean over the feet that touch");
+
+  v(m.contact.dropped_flags, "contact.dropped_flags", "1",
+    "feet whose contact flag the controller stopped to believe");
 
   v(m.estimator.position_error_mm, "estimator.position_error_mm", "mm",
     "estimated to true trunk position, horizontal, mean");

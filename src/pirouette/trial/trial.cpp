@@ -216,6 +216,9 @@ class Trial final : public MotionSource, public Observer {
     result.interrupted = end == LoopEnd::kObserver;
     result.metrics = summarise();
     result.metrics.interrupted = result.interrupted;
+    const TickTrace& last = controller_.trace();
+    if (is_stood_down(last.status)) result.stood_down = words(last.status);
+    if (has_failed(last.self_check)) result.stood_down.append(": ").append(words(last.self_check));
     result.completed = !fall_tick_ && !result.interrupted && is_done();
     std::optional<Error> error;
     if (whole_run) {
@@ -352,6 +355,7 @@ class Trial final : public MotionSource, public Observer {
     m.fell = fall_tick_.has_value();
     if (fall_tick_) m.fall_time_s = schedule_.seconds(*fall_tick_);
     m.stand_down_delay_s = stand_down_delay_;
+    for (const bool dropped : controller_.trace().flag_dropped) m.contact.dropped_flags += dropped;
     m.timing = summarise_times(tick_us_, mpc_us_, wbc_us_);
     m.timing.physics_step_us_median = plant_.physics_step_us_median();
     m.timing.real_time_factor = simulated / wall;

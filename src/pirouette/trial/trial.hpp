@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "pirouette/base/result.hpp"
 #include "pirouette/controller/controller_config.hpp"
@@ -56,6 +57,7 @@ struct TrialResult {
   Metrics metrics;
   bool interrupted = false;  ///< progress returned false; metrics are of the part until then
   bool recorded = false;     ///< a recording was written
+  std::string stood_down;    ///< why the controller gave up, in words; empty: it did not
   /// What was commanded was done before run.time_limit, by kDoneShare of it at least.
   bool completed = false;
 };

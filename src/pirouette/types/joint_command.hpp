@@ -2,6 +2,10 @@
 // dq_measured).
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <string_view>
+
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 
@@ -21,11 +25,26 @@ using JointCommand = PerLeg<LegCommand>;
 enum class ControllerStatus : int {
   kStanding = 0,  ///< on four feet
   kWalking = 1,
-  kFallen = 2,        ///< roll, pitch or height out of bounds: damped stand-down
-  kBadInput = 3,      ///< inputs not finite, or sensors dead, for too long: damped stand-down
-  kSolverFailed = 4,  ///< MPC or WBC failed too often in a row: damped stand-down
-  kBadCommand = 5,    ///< the computed command was not finite: damped stand-down
+  kFallen = 2,           ///< roll, pitch or height out of bounds: damped stand-down
+  kBadInput = 3,         ///< inputs not finite, or sensors dead, for too long: damped stand-down
+  kSolverFailed = 4,     ///< MPC or WBC failed too often in a row: damped stand-down
+  kBadCommand = 5,       ///< the computed command was not finite: damped stand-down
+  kCheckFailed = 6,      ///< the self-check found something wrong: damped stand-down
+  kGyroAgainstLegs = 7,  ///< gyro and legs contradict each other: damped stand-down
 };
+
+/// What the status says, in a few words.
+constexpr std::string_view words(ControllerStatus status) {
+  constexpr std::array<std::string_view, 8> kWords = {"standing",
+                                                      "walking",
+                                                      "fallen",
+                                                      "bad input",
+                                                      "solver failed",
+                                                      "bad command",
+                                                      "self-check failed",
+                                                      "gyro and legs contradict each other"};
+  return kWords[static_cast<std::size_t>(status)];
+}
 
 /// True for every status that latches the damped stand-down.
 constexpr bool is_stood_down(ControllerStatus s) { return static_cast<int>(s) >= 2; }

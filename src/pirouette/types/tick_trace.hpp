@@ -14,6 +14,7 @@
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
 #include "pirouette/types/robot_state.hpp"
+#include "pirouette/types/self_check.hpp"
 #include "pirouette/types/sensor_reading.hpp"
 #include "pirouette/types/swing_target.hpp"
 #include "pirouette/types/terrain_plane.hpp"
@@ -26,9 +27,11 @@ struct TickTrace {
   SensorReading sensors;
   PerLeg<bool> encoder_stuck{};  ///< what the leg's encoders say is not believed
   ControllerStatus status = ControllerStatus::kStanding;
+  SelfCheck self_check = SelfCheck::kRunning;
   RobotState state;
   PerLeg<FootState> feet{};
   FootContacts contacts;
+  PerLeg<bool> flag_dropped{};  ///< the foot's contact flag is not believed
   TerrainPlane plane;
   GroundEstimate ground;
   int remembered_treads = 0;
@@ -57,12 +60,12 @@ struct TickTrace {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [sensors, encoder_stuck, status, state, feet, contacts, plane, ground, remembered_treads,
-           creep, tilt_bias_H, aid_offset, gait, path, twist, integral_H, footholds, com_plan,
-           psp_weight, reference, swing, mpc, wbc, command] = self;
-    visit(sensors, encoder_stuck, status, state, feet, contacts, plane, ground, remembered_treads,
-          creep, tilt_bias_H, aid_offset, gait, path, twist, integral_H, footholds, com_plan,
-          psp_weight, reference, swing, mpc, wbc, command);
+    auto& [sensors, encoder_stuck, status, self_check, state, feet, contacts, flag_dropped, plane,
+           ground, remembered_treads, creep, tilt_bias_H, aid_offset, gait, path, twist, integral_H,
+           footholds, com_plan, psp_weight, reference, swing, mpc, wbc, command] = self;
+    visit(sensors, encoder_stuck, status, self_check, state, feet, contacts, flag_dropped, plane,
+          ground, remembered_treads, creep, tilt_bias_H, aid_offset, gait, path, twist, integral_H,
+          footholds, com_plan, psp_weight, reference, swing, mpc, wbc, command);
   }
 };
 
@@ -80,9 +83,14 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   using detail::per_leg;
   const auto rpy = [](const RollPitchYaw& a) { return Vec3(a.roll, a.pitch, a.yaw); };
   visit("time", "s", "time of the sensor reading", t.sensors.time);
-  visit("status", "1",
-        "0 standing, 1 walking, 2 fallen, 3 bad input, 4 solver failed, 5 bad command",
-        static_cast<int>(t.status));
+  visit(
+      "status", "1",
+      "0 standing, 1 walking, 2 fallen, 3 bad input, 4 solver failed, 5 bad command, 6 self-check "
+      "failed",
+      static_cast<int>(t.status));
+  visit("self_check", "1",
+        "0 running, 1 passed, 2 skipped, else what it found: types/self_check.hpp",
+        static_cast<int>(t.self_check));
   visit("joint_position", "rad", "measured abad, hip, knee", t.sensors.joint_position);
   visit("joint_velocity", "rad/s", "measured", t.sensors.joint_velocity);
   visit("specific_force_B", "m/s^2", "measured by the accelerometer", t.sensors.specific_force_B);
@@ -97,6 +105,7 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit("contact", "1", "foot may push", per_leg(t.contacts, [](auto& c) { return c.in_contact; }));
   visit("contact_measured", "1", "foot touches",
         per_leg(t.contacts, [](auto& c) { return c.measured; }));
+  visit("flag_dropped", "1", "the foot's contact flag is not believed", t.flag_dropped);
   visit("contact_point", "m", "p_WC of the foot model",
         per_leg(t.contacts, [](auto& c) { return c.p_WC; }));
   visit("contact_normal", "1", "n_W of the foot model",
