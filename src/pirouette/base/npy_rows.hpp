@@ -48,7 +48,7 @@ ColumnType column_type(const PerLeg<T>& value) {
   return type;
 }
 
-/// The value's bytes as they lie in memory, appended to `out`.
+/// Appends the value's bytes, as they lie in memory, to `out`.
 template <class T>
   requires std::is_arithmetic_v<T>
 void append_value(std::vector<char>& out, const T& value) {
@@ -65,7 +65,7 @@ void append_value(std::vector<char>& out, const PerLeg<T>& value) {
   for (const T& leg : value) append_value(out, leg);
 }
 
-/// The same way back; returns where the next value begins.
+/// Sets `value` from the bytes at `from`; returns where the next value begins.
 template <class T>
   requires std::is_arithmetic_v<T>
 const char* take_value(const char* from, T& value) {
@@ -83,7 +83,7 @@ const char* take_value(const char* from, PerLeg<T>& value) {
   return from;
 }
 
-/// Every column's bytes, appended to `out`.
+/// Appends the bytes of every column to `out`.
 template <class Row>
 void append_row(std::vector<char>& out, const Row& row) {
   Row::columns(row, [&](const char*, const char*, const char*, const auto& value) {
@@ -91,8 +91,8 @@ void append_row(std::vector<char>& out, const Row& row) {
   });
 }
 
-/// Head of a file of `rows` rows like `row`. Its length does not depend on `rows`, so that it can
-/// be written again over itself.
+/// Header of a file of `rows` rows like `row`. Its length does not depend on `rows`, so that it can
+/// be overwritten in place.
 template <class Row>
 std::string npy_rows_header(const Row& row, std::uint64_t rows) {
   std::string fields;

@@ -1,4 +1,4 @@
-// Every parameter of the controller: what goes on a robot.
+// All parameters of the controller; none of the simulated world.
 #pragma once
 
 #include "pirouette/com/com_config.hpp"
@@ -15,6 +15,7 @@
 
 namespace pirouette {
 
+/// Parameters of a SpinController.
 struct ControllerConfig {
   ControlConfig control;
   BodyConfig body;

@@ -1,10 +1,11 @@
-// When the controller gives up.
+// Limits at which the controller stands down.
 #pragma once
 
 #include "pirouette/base/fields.hpp"
 
 namespace pirouette {
 
+/// Parameters `safety.*`.
 struct SafetyConfig {
   double max_tilt = 0.8;
   double min_height_share = 0.4;
