@@ -7,18 +7,21 @@
 
 namespace pirouette {
 
+/// Values of creep.mode.
 enum class CreepModelMode { kOff, kStored, kOnline };
 template <>
 struct EnumNames<CreepModelMode> {
   static constexpr std::array<std::string_view, 3> kNames = {"off", "stored", "online"};
 };
 
+/// Values of estimation.source.
 enum class EstimatorSource { kKalman, kTruth };
 template <>
 struct EnumNames<EstimatorSource> {
   static constexpr std::array<std::string_view, 2> kNames = {"kalman", "truth"};
 };
 
+/// Parameters `estimation.*`.
 struct EstimationConfig {
   EstimatorSource source = EstimatorSource::kKalman;
   double process_position = 1e-9;
@@ -73,6 +76,7 @@ struct EstimationConfig {
   }
 };
 
+/// Parameters `creep.*`.
 struct CreepConfig {
   CreepModelMode mode = CreepModelMode::kOnline;
   double calibrated_friction = 0.75;

@@ -8,6 +8,7 @@
 
 namespace pirouette {
 
+/// Parameters `gait.*`.
 struct GaitConfig {
   double period = 0.5;
   double duty = 0.6;
@@ -24,23 +25,24 @@ struct GaitConfig {
   double recovery_period = 0.26;
   double recovery_time = 0.6;
 
-  static constexpr double kMinSwingTime = 0.05;  ///< s; a leg cannot lift, move and land in less
+  /// s, least time in which a leg lifts, moves and lands.
+  static constexpr double kMinSwingTime = 0.05;
 
-  /// s, of a stride whose swing takes that time.
+  /// Stride (s) whose swing takes kMinSwingTime.
   double shortest_stride() const { return kMinSwingTime / (1.0 - duty); }
 
-  /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far
-  /// in one.
+  /// Stride (s) at a commanded yaw rate (rad/s): shorter than `period` where the trunk would turn
+  /// by more than max_turn_per_stride.
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
     return std::max({std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate),
                      shortest_stride()});
   }
-  /// On stepped ground, with a stride of `stride` (s).
+  /// Duty factor on stepped ground, with a stride of `stride` (s).
   double step_duty_at(double stride) const {
     return std::max(duty, std::min(step_duty, 1.0 - kMinSwingTime / stride));
   }
-  /// s, of the stride after a push.
+  /// Stride (s) after a push, at a commanded yaw rate (rad/s).
   double recovery_period_at(double yaw_rate) const {
     return std::min(period_at(yaw_rate), std::max(recovery_period, shortest_stride()));
   }
@@ -75,6 +77,7 @@ struct GaitConfig {
   }
 };
 
+/// Parameters `foothold.*`.
 struct FootholdConfig {
   bool feedback = true;
   double velocity_gain = 0.03;
