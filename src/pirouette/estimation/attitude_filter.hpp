@@ -38,7 +38,7 @@ struct Attitude {
 /// gyro bias is the slope over the time at rest of the gyro's integral minus that rotation.
 class AttitudeFilter {
  public:
-  /// level, yaw 0, no bias.
+  /// Starts level at yaw 0, without gyro bias.
   explicit AttitudeFilter(const EstimationConfig& config) : config_(config) {}
 
   /// Attitude after one tick of `dt` (s).

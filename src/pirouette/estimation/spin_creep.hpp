@@ -27,12 +27,12 @@ struct CreepInput {
 /// yaw moment per normal force is m. With the ratio mu_t / mu calibrated that alone gives k.
 class SpinCreep {
  public:
-  /// The stored values.
+  /// Starts from the calibrated values.
   explicit SpinCreep(const CreepConfig& config) : config_(config) { reset(); }
 
   /// Estimate after one tick of `dt` (s).
   CreepEstimate update(const CreepInput& in, double dt) noexcept;
-  void reset() noexcept;  ///< the stored values
+  void reset() noexcept;  ///< back to the calibrated values
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

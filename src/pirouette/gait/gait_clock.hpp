@@ -15,7 +15,7 @@ namespace pirouette {
 /// other foot lifts. A foot that stays down reports mid-stance.
 class GaitClock {
  public:
-  /// Standing.
+  /// Starts standing.
   explicit GaitClock(const GaitConfig& config);
 
   /// Phase `dt` (s) after the previous call; the first call with `walk` is the start itself.

@@ -12,8 +12,8 @@
 namespace pirouette {
 
 inline constexpr int kMaxHorizon = 24;  ///< steps
-/// Largest number of forces in a prediction: 16 steps of a trot of duty 0.6 have 40, 10 steps on
-/// four feet as well.
+/// Largest number of forces in a prediction. 16 steps of a trot of duty 0.6 have 40, as have 10
+/// steps on four feet.
 inline constexpr int kMaxForces = 42;
 
 /// Change of the body's state by the forces: attitude (rad), CoM position, angular velocity and CoM

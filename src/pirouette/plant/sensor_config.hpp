@@ -1,10 +1,11 @@
-// Noise and biases of the simulated sensors.
+// Parameters of the simulated sensors: noise and biases.
 #pragma once
 
 #include "pirouette/base/fields.hpp"
 
 namespace pirouette {
 
+/// Parameters `plant.sensors.*`.
 struct SensorConfig {
   bool ideal = false;
   double encoder_noise = 5e-4;

@@ -1,4 +1,4 @@
-// The simulated world: terrain, robot hardware, sensors and faults.
+// Parameters of the simulated world: terrain, robot hardware, sensors and faults.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 namespace pirouette {
 
+/// Parameters `plant.*`.
 struct WorldConfig {
   std::string terrain = "flat";
   double timestep = 0.001;

@@ -1,4 +1,4 @@
-// What an experiment file says, before it is expanded into trials; for this folder only.
+// Content of an experiment file before it is expanded into trials; for this folder only.
 #pragma once
 
 #include <string>

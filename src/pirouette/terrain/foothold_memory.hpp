@@ -22,7 +22,7 @@ struct RememberedGround {
 /// differ in height by more than min_step have an edge between them; the footholds between two
 /// edges are on one tread. Single odd heights (a foot on an edge) make no tread. Where the treads
 /// do not explain the heights, as on rough ground, there is no result. Assumes straight stairs;
-/// old footholds are discarded, so the odometry's drift does no harm. docs/terrain.md#memory
+/// old footholds are discarded, to follow the odometry's drift. docs/terrain.md#memory
 class FootholdMemory {
  public:
   static constexpr std::size_t kCapacity = 160;  ///< footholds kept
