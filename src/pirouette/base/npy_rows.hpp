@@ -30,6 +30,7 @@ struct ColumnType {
   }
 };
 
+/// Type of a number.
 template <class T>
   requires std::is_arithmetic_v<T>
 ColumnType column_type(const T&) {
@@ -37,10 +38,12 @@ ColumnType column_type(const T&) {
   if constexpr (std::is_same_v<T, int>) return {"<i4", {}};
   if constexpr (std::is_same_v<T, bool>) return {"|b1", {}};
 }
+/// Type of a column vector.
 template <int N>
 ColumnType column_type(const Eigen::Matrix<double, N, 1>&) {
   return {"<f8", {N}};
 }
+/// Type of a value for each leg.
 template <class T>
 ColumnType column_type(const PerLeg<T>& value) {
   ColumnType type = column_type(value[Leg::kFR]);
@@ -48,7 +51,7 @@ ColumnType column_type(const PerLeg<T>& value) {
   return type;
 }
 
-/// Appends the value's bytes, as they lie in memory, to `out`.
+/// Appends the bytes of a number, as they lie in memory, to `out`.
 template <class T>
   requires std::is_arithmetic_v<T>
 void append_value(std::vector<char>& out, const T& value) {
@@ -56,10 +59,12 @@ void append_value(std::vector<char>& out, const T& value) {
   out.resize(at + sizeof(T));
   std::memcpy(out.data() + at, &value, sizeof(T));
 }
+/// Appends the elements of a column vector to `out`.
 template <int N>
 void append_value(std::vector<char>& out, const Eigen::Matrix<double, N, 1>& value) {
   for (const double element : value) append_value(out, element);
 }
+/// Appends the values of FR, FL, RR and RL to `out`.
 template <class T>
 void append_value(std::vector<char>& out, const PerLeg<T>& value) {
   for (const T& leg : value) append_value(out, leg);
@@ -72,11 +77,13 @@ const char* take_value(const char* from, T& value) {
   std::memcpy(&value, from, sizeof(T));
   return from + sizeof(T);
 }
+/// The same for a column vector.
 template <int N>
 const char* take_value(const char* from, Eigen::Matrix<double, N, 1>& value) {
   for (double& element : value) from = take_value(from, element);
   return from;
 }
+/// The same for the values of FR, FL, RR and RL.
 template <class T>
 const char* take_value(const char* from, PerLeg<T>& value) {
   for (T& leg : value) from = take_value(from, leg);

@@ -31,9 +31,11 @@ using Errors = std::vector<Error>;
 template <class T>
 class [[nodiscard]] Result {
  public:
-  /// Of a value, of several errors or of one.
-  Result(T value) : state_(std::move(value)) {}              // NOLINT(google-explicit-constructor)
-  Result(Errors errors) : state_(std::move(errors)) {}       // NOLINT(google-explicit-constructor)
+  /// Of a value.
+  Result(T value) : state_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+  /// Of at least one error.
+  Result(Errors errors) : state_(std::move(errors)) {}  // NOLINT(google-explicit-constructor)
+  /// Of one error.
   Result(Error error) : state_(Errors{std::move(error)}) {}  // NOLINT(google-explicit-constructor)
 
   /// True: there is a value.

@@ -132,14 +132,14 @@ struct Metrics {
   Number fall_time_s, stand_down_delay_s;
   double turns_done = 0.0;
   Number yaw_rate_mean, yaw_rate_error;
-  ComMetrics com;
-  PathMetrics path;
-  AttitudeMetrics attitude;
-  AccelerationMetrics acceleration;
-  ContactMetrics contact;
-  EstimatorMetrics estimator;
-  TimingMetrics timing;
-  RunContext context;
+  ComMetrics com;                    ///< `com.*`
+  PathMetrics path;                  ///< `path.*`
+  AttitudeMetrics attitude;          ///< `attitude.*`
+  AccelerationMetrics acceleration;  ///< `acceleration.*`
+  ContactMetrics contact;            ///< `contact.*`
+  EstimatorMetrics estimator;        ///< `estimator.*`
+  TimingMetrics timing;              ///< `timing.*`
+  RunContext context;                ///< `context.*`
 
   /// Calls visit(value, "key", "unit", "meaning") for each entry of metrics.json in its order; a
   /// dot in the key nests. A value is a bool, double, Number, int64 or string.

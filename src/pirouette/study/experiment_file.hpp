@@ -67,9 +67,10 @@ struct PrintedResult {
 
 /// Accepted range of the mean of a metric over the seeds.
 struct ExperimentBound {
-  std::string row;                 ///< label; empty: every row
-  std::string metric;              ///< key of metrics.json
-  std::optional<double> min, max;  ///< absent: no bound on this side
+  std::string row;     ///< label; empty: every row
+  std::string metric;  ///< key of metrics.json
+  /// Smallest accepted mean; absent: no bound.
+  std::optional<double> min, max;  ///< largest accepted mean; absent: no bound
   /// Label of a row: `share` times its mean of `metric` is added to max (0 when absent); empty: max
   /// alone.
   std::string relative_to;
@@ -101,9 +102,10 @@ struct Experiment {
 
 /// Changes of an experiment by the command line.
 struct ExperimentChanges {
-  std::optional<int> seeds{};                         ///< run seeds 1 to this instead of the file's
-  std::optional<double> turns{};                      ///< run.turns of every trial
-  std::optional<std::int64_t> trials{}, draw_seed{};  ///< of a random experiment
+  std::optional<int> seeds{};     ///< run seeds 1 to this instead of the file's
+  std::optional<double> turns{};  ///< run.turns of every trial
+  /// Number of trials of a random experiment.
+  std::optional<std::int64_t> trials{}, draw_seed{};  ///< seed of its draws
   std::int64_t max_trials = kMaxTrials;               ///< larger experiments are refused
 };
 
