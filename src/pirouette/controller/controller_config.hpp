@@ -49,7 +49,7 @@ struct ControllerConfig {
     v(s.mpc, "mpc", "Convex model predictive control.");
     v(s.wbc, "wbc", "Whole-body control.");
     v(s.joint, "joint", "Joint-level gains and limits.");
-    v(s.safety, "safety", "When the controller gives up.");
+    v(s.safety, "safety", "Limits at which the controller stands down.");
   }
 };
 

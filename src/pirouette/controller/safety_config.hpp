@@ -30,8 +30,8 @@ struct SafetyConfig {
       "The last good forces are held over this many failed solutions in a row, then the controller "
       "stands down.");
     v(s.max_gyro_step, "max_gyro_step", "rad/s", Range{0.01, 1e6},
-      "An IMU sample whose gyro leaves the last good one by more is a spike: that one stands in, "
-      "for up to max_bad_readings ticks.");
+      "An IMU sample whose gyro differs from the last good one by more is a spike: the last good "
+      "one is used instead, for up to max_bad_readings ticks.");
     v(s.max_accelerometer_step, "max_accelerometer_step", "m/s^2", Range{0.1, 1e6},
       "The same for its accelerometer.");
     v(s.max_repeated_samples, "max_repeated_samples", "ticks", Range{0, 100000},
@@ -39,7 +39,7 @@ struct SafetyConfig {
       "the controller stands down.");
     v(s.max_blind_travel, "max_blind_travel", "rad", Range{0.001, 100.0},
       "An encoder that repeats its angle to the last bit over this much commanded travel is stuck: "
-      "its leg counts no more as odometry. Two such legs: the controller stands down.");
+      "its leg is not used as odometry. With two such legs the controller stands down.");
   }
 };
 

@@ -67,12 +67,12 @@ struct EstimationConfig {
     v(s.gyro_bias_time_constant, "gyro_bias_time_constant", "s", Range{1.0, 1e5},
       "Time constant of the gyro-bias estimate while walking.");
     v(s.gyro_rest_samples, "gyro_rest_samples", "samples", Range{0.0, 1e6},
-      "Samples at rest that the prior of no gyro bias is worth: (noise / bias)^2.");
+      "Weight of the prior of no gyro bias, in samples at rest: (noise / bias)^2.");
     v(s.tilt_bias_time, "tilt_bias_time", "s", Range{0.0, 1000.0},
       "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: "
       "off.");
     v(s.contact_debounce, "contact_debounce", "ticks", Range{1, 100},
-      "A contact flag counts when it has been the same for this long.");
+      "A contact flag is used when it has been the same for this long.");
   }
 };
 

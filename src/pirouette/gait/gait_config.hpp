@@ -59,14 +59,13 @@ struct GaitConfig {
     v(s.max_turn_per_stride, "max_turn_per_stride", "rad", Range{0.1, 10.0},
       "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk "
       "by more.");
-    v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "That rule shortens no further.");
+    v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "Lower limit of that rule.");
     v(s.adapt, "adapt",
       "Duty and swing height follow the ground that the feet have met, the stride follows pushes.");
     v(s.step_duty, "step_duty", "1", Range{0.4, 0.9}, "Duty on stepped ground, if more than duty.");
     v(s.step_clearance, "step_clearance", "m", Range{0.0, 0.2},
       "On stepped ground the swing's apex is this far above the highest step met.");
-    v(s.max_swing_height, "max_swing_height", "m", Range{0.005, 0.3},
-      "The rule raises the apex no further.");
+    v(s.max_swing_height, "max_swing_height", "m", Range{0.005, 0.3}, "Upper limit of that rule.");
     v(s.recovery_speed, "recovery_speed", "m/s", Range{0.01, 100.0},
       "The robot counts as pushed when the CoM's velocity is off its reference by more. Not on "
       "stepped ground.");

@@ -93,7 +93,7 @@ struct AidConfig {
     v(s.ramp_time, "ramp_time", "s", Range{0.0, 100.0},
       "After its first measurement the aid gains influence over this time.");
     v(s.timeout, "timeout", "s", Range{0.01, 100.0},
-      "An aid that was silent for longer is ramped in again.");
+      "After a longer gap the aid is ramped in again.");
     v(s.max_offset, "max_offset", "m", Range{0.0, 10.0},
       "A measurement further from the odometry than this beyond the offset is an outlier.");
   }
