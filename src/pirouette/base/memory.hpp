@@ -64,7 +64,7 @@ template <class T>
   requires(!std::is_class_v<T>)
 inline constexpr bool kIsMatrix<T> = false;
 
-/// Turns into a member of any type but std::optional, which takes any value by itself.
+/// Converts to a member of any type but std::optional, which accepts any value by itself.
 struct Anything {
   template <class T>
   operator T() const;  // NOLINT(google-explicit-constructor): never called

@@ -75,8 +75,8 @@ class CentreOfMassPlanner {
   }
 
  private:
-  /// A foot as the planner sees it: (weight, x, y). Where the real contact is early or late, weight
-  /// and position jump; the jump fades away instead.
+  /// Vertex of one foot: (weight, x, y). At an early or late contact weight and position jump, and
+  /// the jump is faded out.
   struct Vertex {
     Vec3 nominal = Vec3::Zero();
     Vec3 jump = Vec3::Zero();  ///< before minus after

@@ -36,10 +36,10 @@ struct OdometryEstimate {
 /// [Bledt18] linear Kalman filter with rolling feet: docs/equations.md#kalman-filter.
 ///
 /// State (18): trunk position and velocity and four sphere centres. Measurements (28): foot
-/// positions and velocities relative to the trunk, and foot heights; a foot in the air reports
-/// none, and its state is placed afresh. Attitude enters only through the inputs, and all noise is
-/// isotropic in the horizontal plane, so the filter falls apart exactly into one 6-state filter (p,
-/// v, c_FR, c_FL, c_RR, c_RL) per world axis; x and y share their covariance.
+/// positions and velocities relative to the trunk, and foot heights; a foot in the air has none,
+/// and its state is set to its kinematic position. Attitude enters only through the inputs, and all
+/// noise is isotropic in the horizontal plane, so the filter is exactly one 6-state filter (p, v,
+/// c_FR, c_FL, c_RR, c_RL) per world axis; x and y share their covariance.
 class LegOdometryFilter {
  public:
   static constexpr int kStates = 6;                            ///< per world axis
@@ -71,8 +71,8 @@ class LegOdometryFilter {
 
   void predict(const OdometryInput& in, double dt) noexcept;
   void place_lifted_feet(const OdometryInput& in) noexcept;
-  /// m/s, horizontal: by how much the feet that stand firmly agree that the velocity is off; absent
-  /// while it is little, or they do not.
+  /// Horizontal velocity error (m/s) on which all fully trusted feet agree; absent when it is small
+  /// or they do not agree.
   std::optional<double> velocity_jump(const OdometryInput& in) const noexcept;
   double noise_factor(double trust) const {
     return 1.0 + config_.swing_noise_factor * (1.0 - trust);

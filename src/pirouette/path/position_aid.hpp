@@ -44,7 +44,7 @@ class PositionAidOffset {
   std::array<Past, kHistory> history_;
   std::size_t recorded_ = 0;
   Vec2 offset_ = Vec2::Zero();  ///< m
-  double heard_for_ = 0.0;      ///< s, with the aid alive
+  double heard_for_ = 0.0;      ///< s, for which the aid has measured
   double silent_for_ = 0.0;     ///< s since its last measurement
   bool known_ = false;
 };

@@ -21,7 +21,7 @@ class GroundClassifier {
   /// centres is parallel to that through the contacts for any normal.
   void add(Leg leg, const Vec3& p_WF) noexcept;
 
-  const GroundEstimate& estimate() const { return estimate_; }  ///< by all footholds so far
+  const GroundEstimate& estimate() const { return estimate_; }  ///< from the footholds so far
   void reset() noexcept;                                        ///< no footholds
 
   /// See base/memory.hpp.
@@ -35,7 +35,7 @@ class GroundClassifier {
   static constexpr std::size_t kPerLeg = 3;
   struct Recent {
     std::array<Vec3, kPerLeg> p_WF = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};  ///< m
-    std::size_t count = 0;  ///< footholds ever
+    std::size_t count = 0;  ///< footholds added
   };
 
   TerrainConfig config_;
