@@ -34,7 +34,7 @@ struct RunFolderOptions {
   std::uintmax_t size = 0;  ///< bytes that are going to be written
 };
 
-/// A folder under construction in `.<name>.pirouette-part` beside its final place, locked against
+/// A folder under construction in `.NAME.pirouette-part` beside its final place, locked against
 /// other processes. commit() moves it there; without commit() the destructor removes it, so that a
 /// failure leaves nothing behind. The part folder of a killed process is removed by the next one.
 /// No file is removed or replaced that the record (kRecordFile) of its folder does not list.
@@ -46,7 +46,7 @@ class RunFolder {
   static Result<RunFolder> open(const std::filesystem::path& path,
                                 const RunFolderOptions& options = {});
 
-  /// The same at the first of `path`, `path`-2, `path`-3 ... that does not exist and is not
+  /// The same at the first of PATH, PATH-2, PATH-3 ... that does not exist and is not being
   /// written.
   static Result<RunFolder> open_next(const std::filesystem::path& path,
                                      const RunFolderOptions& options = {});
