@@ -1,6 +1,5 @@
-// How a parameter declares itself: one line with name, unit, range and meaning. Loader, range
-// check, dump and the documentation table all walk these lines (config/toml.cpp,
-// config/config_doc.cpp).
+// Declaration of a parameter: one line with name, unit, range and meaning. Loader, range check,
+// dump and the documentation table all use these lines (config/toml.cpp, config/config_doc.cpp).
 //
 // A struct of parameters has a static `fields(self, visit)` that calls, one line a parameter,
 //   visit(self.member, "key", "unit", Range{min, max}, "meaning")
@@ -18,14 +17,16 @@ namespace pirouette {
 
 /// Closed interval of allowed values.
 struct Range {
-  double min;
-  double max;
+  double min;  ///< smallest allowed value
+  double max;  ///< largest allowed value
 };
 
-/// Names of an enum's values in declaration order; specialised beside each enum.
+/// Names of an enum's values in files, in declaration order, as kNames; specialised beside each
+/// enum.
 template <class Enum>
 struct EnumNames;
 
+/// Name of `value` in files.
 template <class Enum>
 std::string_view enum_name(Enum value) {
   return EnumNames<Enum>::kNames.at(static_cast<std::size_t>(value));

@@ -1,4 +1,4 @@
-// A short number that stands for a text.
+// Hash of texts.
 #pragma once
 
 #include <cstdint>
@@ -7,16 +7,18 @@
 
 namespace pirouette {
 
-/// FNV-1a, 64 bits, of a sequence of texts: the same on every machine.
+/// FNV-1a hash, 64 bits, of a sequence of texts; the same on every machine.
 class Fingerprint {
  public:
+  /// Appends `text` to the sequence.
   void add(std::string_view text) {
     for (const char c : text) mix(static_cast<unsigned char>(c));
     mix(kSeparator);
   }
 
-  std::uint64_t value() const { return value_; }
+  std::uint64_t value() const { return value_; }  ///< the hash of all texts so far
 
+  /// The hash in 16 hexadecimal digits.
   std::string hex() const {
     constexpr std::string_view kDigits = "0123456789abcdef";
     std::string text;

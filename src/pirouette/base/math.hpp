@@ -8,19 +8,19 @@
 
 namespace pirouette {
 
-using Vec2 = Eigen::Vector2d;
-using Vec3 = Eigen::Vector3d;
-using Vec4 = Eigen::Vector4d;
-using Vec6 = Eigen::Matrix<double, 6, 1>;
-using Mat2 = Eigen::Matrix2d;
-using Mat3 = Eigen::Matrix3d;
-using Quat = Eigen::Quaterniond;
+using Vec2 = Eigen::Vector2d;              ///< column vector
+using Vec3 = Eigen::Vector3d;              ///< column vector
+using Vec4 = Eigen::Vector4d;              ///< column vector
+using Vec6 = Eigen::Matrix<double, 6, 1>;  ///< column vector
+using Mat2 = Eigen::Matrix2d;              ///< 2 x 2
+using Mat3 = Eigen::Matrix3d;              ///< 3 x 3
+using Quat = Eigen::Quaterniond;           ///< unit quaternion
 
-inline constexpr double kPi = 3.14159265358979323846;
-inline constexpr double kGravity = 9.81;  ///< m/s^2, along -z of the world
+inline constexpr double kPi = 3.14159265358979323846;  ///< pi
+inline constexpr double kGravity = 9.81;               ///< m/s^2, along -z of the world
 
-constexpr double square(double x) { return x * x; }
-constexpr double radians(double degrees) { return degrees * kPi / 180.0; }
+constexpr double square(double x) { return x * x; }                         ///< x^2
+constexpr double radians(double degrees) { return degrees * kPi / 180.0; }  ///< rad
 
 /// Vector `v` shortened to at most `limit` in length, direction kept.
 template <int N>

@@ -1,4 +1,4 @@
-// What an object remembers, as bytes and back: for snapshots.
+// State of objects as bytes and back, for snapshots.
 #pragma once
 
 #include <Eigen/Core>
@@ -17,7 +17,7 @@
 
 namespace pirouette {
 
-/// A class with memory lists it in
+/// True for a class that lists its state in
 ///
 ///   template <class Self, class Visit>
 ///   static void memory(Self& self, Visit&& visit) {
@@ -27,7 +27,8 @@ namespace pirouette {
 ///
 /// Members may be numbers, bool, enums, Eigen matrices and quaternions of fixed size;
 /// std::optional, std::variant, std::vector, std::array and PerLeg of what may be a member; classes
-/// that list theirs; and plain structs of up to twelve members, none optional, which need no list.
+/// that list their state; and plain structs of up to twelve members, none optional, which need no
+/// list.
 template <class T>
 concept ListsMemory = requires(T& value, void (*visit)()) { T::memory(value, visit); };
 
@@ -63,7 +64,7 @@ template <class T>
   requires(!std::is_class_v<T>)
 inline constexpr bool kIsMatrix<T> = false;
 
-/// Turns into a member of any type but std::optional, which takes any value by itself.
+/// Converts to a member of any type but std::optional, which accepts any value by itself.
 struct Anything {
   template <class T>
   operator T() const;  // NOLINT(google-explicit-constructor): never called
@@ -129,11 +130,13 @@ void visit_members(T& s, Visit&& v) {
 
 }  // namespace detail
 
-/// Appends what it visits to a vector, in the machine's own byte order and without padding.
+/// Appends what it visits to a vector, in the machine's byte order and without padding.
 class MemoryWriter {
  public:
+  /// `out` must outlive the writer.
   explicit MemoryWriter(std::vector<std::byte>& out) : out_(out) {}
 
+  /// Appends `members`.
   template <class... T>
   void operator()(const T&... members) {
     (write(members), ...);
@@ -179,17 +182,19 @@ class MemoryWriter {
   std::vector<std::byte>& out_;
 };
 
-/// Fills what it visits from bytes that a MemoryWriter made of the same members.
+/// Sets what it visits from bytes that a MemoryWriter made of the same members.
 class MemoryReader {
  public:
+  /// `in` must outlive the reader.
   explicit MemoryReader(std::span<const std::byte> in) : in_(in) {}
 
+  /// Sets `members`; unchanged or partly set when bytes are missing, see complete().
   template <class... T>
   void operator()(T&... members) {
     (read(members), ...);
   }
 
-  /// Every byte has been used, and none was missing.
+  /// True when every byte has been used and none was missing.
   bool complete() const { return ok_ && in_.empty(); }
 
  private:

@@ -1,4 +1,4 @@
-// The head of a NumPy array file, format version 1.0.
+// Header of a NumPy array file, format version 1.0.
 #pragma once
 
 #include <bit>

@@ -30,6 +30,7 @@ struct ColumnType {
   }
 };
 
+/// Type of a number.
 template <class T>
   requires std::is_arithmetic_v<T>
 ColumnType column_type(const T&) {
@@ -37,10 +38,12 @@ ColumnType column_type(const T&) {
   if constexpr (std::is_same_v<T, int>) return {"<i4", {}};
   if constexpr (std::is_same_v<T, bool>) return {"|b1", {}};
 }
+/// Type of a column vector.
 template <int N>
 ColumnType column_type(const Eigen::Matrix<double, N, 1>&) {
   return {"<f8", {N}};
 }
+/// Type of a value for each leg.
 template <class T>
 ColumnType column_type(const PerLeg<T>& value) {
   ColumnType type = column_type(value[Leg::kFR]);
@@ -48,7 +51,7 @@ ColumnType column_type(const PerLeg<T>& value) {
   return type;
 }
 
-/// The value's bytes as they lie in memory, appended to `out`.
+/// Appends the bytes of a number, as they lie in memory, to `out`.
 template <class T>
   requires std::is_arithmetic_v<T>
 void append_value(std::vector<char>& out, const T& value) {
@@ -56,34 +59,38 @@ void append_value(std::vector<char>& out, const T& value) {
   out.resize(at + sizeof(T));
   std::memcpy(out.data() + at, &value, sizeof(T));
 }
+/// Appends the elements of a column vector to `out`.
 template <int N>
 void append_value(std::vector<char>& out, const Eigen::Matrix<double, N, 1>& value) {
   for (const double element : value) append_value(out, element);
 }
+/// Appends the values of FR, FL, RR and RL to `out`.
 template <class T>
 void append_value(std::vector<char>& out, const PerLeg<T>& value) {
   for (const T& leg : value) append_value(out, leg);
 }
 
-/// The same way back; returns where the next value begins.
+/// Sets `value` from the bytes at `from`; returns where the next value begins.
 template <class T>
   requires std::is_arithmetic_v<T>
 const char* take_value(const char* from, T& value) {
   std::memcpy(&value, from, sizeof(T));
   return from + sizeof(T);
 }
+/// The same for a column vector.
 template <int N>
 const char* take_value(const char* from, Eigen::Matrix<double, N, 1>& value) {
   for (double& element : value) from = take_value(from, element);
   return from;
 }
+/// The same for the values of FR, FL, RR and RL.
 template <class T>
 const char* take_value(const char* from, PerLeg<T>& value) {
   for (T& leg : value) from = take_value(from, leg);
   return from;
 }
 
-/// Every column's bytes, appended to `out`.
+/// Appends the bytes of every column to `out`.
 template <class Row>
 void append_row(std::vector<char>& out, const Row& row) {
   Row::columns(row, [&](const char*, const char*, const char*, const auto& value) {
@@ -91,8 +98,8 @@ void append_row(std::vector<char>& out, const Row& row) {
   });
 }
 
-/// Head of a file of `rows` rows like `row`. Its length does not depend on `rows`, so that it can
-/// be written again over itself.
+/// Header of a file of `rows` rows like `row`. Its length does not depend on `rows`, so that it can
+/// be overwritten in place.
 template <class Row>
 std::string npy_rows_header(const Row& row, std::uint64_t rows) {
   std::string fields;

@@ -1,4 +1,4 @@
-// A file of rows of a NumPy structured array, written as they come; `numpy.load` reads it.
+// File of rows of a NumPy structured array, written one by one; `numpy.load` reads it.
 #pragma once
 
 #include <cstdint>
@@ -14,14 +14,16 @@
 
 namespace pirouette {
 
-/// The number of rows in the head of the file is right after finish().
+/// File that grows by rows. The number of rows in its header is right after finish().
 class NpyRowsFile {
  public:
-  /// Head of the file for a number of rows; as long for any number.
+  /// Header of the file for a number of rows; of the same length for any number.
   using Header = std::function<std::string(std::uint64_t)>;
 
+  /// Creates the file `path`. The error names it when it cannot be written.
   static Result<NpyRowsFile> create(const std::filesystem::path& path, Header header);
 
+  /// Appends one row; Row lists its columns (base/npy_rows.hpp).
   template <class Row>
   void append(const Row& row) {
     row_.clear();
@@ -30,7 +32,8 @@ class NpyRowsFile {
     ++rows_;
   }
 
-  /// Completes the head and closes the file; the error when anything could not be written.
+  /// Completes the header and closes the file. Returns the error when anything could not be
+  /// written; absent: done.
   std::optional<Error> finish();
 
  private:
@@ -43,7 +46,7 @@ class NpyRowsFile {
   std::uint64_t rows_ = 0;
 };
 
-/// The rows of a file that NpyRowsFile wrote, with the columns of Row. An error for any other file.
+/// Rows of a file that NpyRowsFile wrote with the columns of Row. An error for any other file.
 template <class Row>
 Result<std::vector<Row>> read_npy_rows(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);

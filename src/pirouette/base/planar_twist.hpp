@@ -1,12 +1,12 @@
-// Motion of a body that keeps a constant planar twist.
+// Motion of a body with a constant planar twist.
 #pragma once
 
 #include "pirouette/base/math.hpp"
 
 namespace pirouette {
 
-/// Displacement of the body's origin after `t` seconds of the constant twist (`v`, `yaw_rate`), `v`
-/// in the turning body's axes; the result in the axes at the start.
+/// Displacement (m) of the body's origin after `t` (s) of the constant twist `v` (m/s, in axes that
+/// turn with the body) and `yaw_rate` (rad/s); in the axes at the start.
 /// [Zhu21] Eq. (1), corrected for any planar twist: docs/equations.md#eq-1
 inline Vec2 planar_twist_displacement(const Vec2& v, double yaw_rate, double t) {
   constexpr double kSeriesAngle = 1e-4;  // rad; below it the quotients lose digits, the series none

@@ -1,4 +1,4 @@
-// Random numbers that are the same with every compiler: by number (philox) and one after another
+// Random numbers that are the same with every compiler: counter-based (philox) and in sequence
 // (RandomStream).
 #pragma once
 
@@ -16,7 +16,7 @@ inline double unit_interval(std::uint64_t bits) {
   return static_cast<double>(bits >> 11) * 0x1p-53;
 }
 
-/// [Salmon11] Philox-4x32-10: 128 random bits that depend on nothing but `counter` and `key`, the
+/// [Salmon11] Philox-4x32-10: 128 random bits that depend on `counter` and `key` alone and are the
 /// same on every machine. Checked against the authors' test vectors.
 inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
                                            std::array<std::uint32_t, 2> key) {
@@ -36,23 +36,25 @@ inline std::array<std::uint32_t, 4> philox(std::array<std::uint32_t, 4> counter,
   return counter;
 }
 
-/// What a stream is for. Streams of one seed are independent, so drawing from one never shifts
+/// Purpose of a stream. Streams of one seed are independent: drawing from one does not shift
 /// another.
 enum class RandomPurpose : std::uint32_t {
-  kTerrain = 1,
-  kSensorBias = 2,
-  kSensorNoise = 3,
-  kTorqueConstants = 4,
-  kContactErrors = 5,
-  kPositionAid = 6,
-  kImuSpikes = 7,
-  kLostCommands = 8
+  kTerrain = 1,          ///< rough ground, blocks
+  kSensorBias = 2,       ///< of gyro and accelerometer
+  kSensorNoise = 3,      ///< of all sensors
+  kTorqueConstants = 4,  ///< of the motors
+  kContactErrors = 5,    ///< wrong contact flags
+  kPositionAid = 6,      ///< noise and drop-outs of the position aid
+  kImuSpikes = 7,        ///< faults
+  kLostCommands = 8      ///< faults
 };
 
-/// Draws one after another; the same with every compiler, because of the standard library only the
-/// generator and its seeding are used, which the standard fixes, and none of its distributions.
+/// Random numbers of one seed and purpose. It uses the generator and the seeding of the standard
+/// library, which the standard defines, and none of its distributions, which differ between
+/// compilers.
 class RandomStream {
  public:
+  /// At the beginning of the stream.
   RandomStream(std::uint64_t seed, RandomPurpose purpose) {
     std::seed_seq sequence{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
                            static_cast<std::uint32_t>(purpose)};
@@ -62,7 +64,8 @@ class RandomStream {
   /// Uniform in [0, 1).
   double uniform() { return unit_interval(generator_()); }
 
-  /// Standard normal, by Box and Muller; one of the pair is dropped so that a draw has no memory.
+  /// Standard normal, by Box and Muller; the second of each pair is dropped, so that a draw keeps
+  /// no state.
   double gaussian() {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * kPi * uniform());

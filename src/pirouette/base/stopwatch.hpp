@@ -1,15 +1,15 @@
-// Wall-clock time since a moment.
+// Wall-clock time.
 #pragma once
 
 #include <chrono>
 
 namespace pirouette {
 
-/// Runs from its construction on.
+/// Time since its construction.
 class Stopwatch {
  public:
-  double seconds() const { return since<std::ratio<1>>(); }
-  double microseconds() const { return since<std::micro>(); }
+  double seconds() const { return since<std::ratio<1>>(); }    ///< s
+  double microseconds() const { return since<std::micro>(); }  ///< us
 
  private:
   using Clock = std::chrono::steady_clock;

@@ -1,6 +1,7 @@
-// Which pirouette this is.
+// Version of the library.
 #pragma once
 
+/// The library.
 namespace pirouette {
 
 /// Version of this library, such as "0.1.0".

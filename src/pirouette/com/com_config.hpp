@@ -7,12 +7,14 @@
 
 namespace pirouette {
 
+/// Values of com.planner.
 enum class ComPlanner { kLinear, kPsp };
 template <>
 struct EnumNames<ComPlanner> {
   static constexpr std::array<std::string_view, 2> kNames = {"linear", "psp"};
 };
 
+/// Values of com.weight.
 enum class PspWeight { kGaussian, kGeometric, kPoisson, kPolynomial };
 template <>
 struct EnumNames<PspWeight> {
@@ -20,6 +22,7 @@ struct EnumNames<PspWeight> {
                                                              "polynomial"};
 };
 
+/// Parameters `com.*`.
 struct ComConfig {
   ComPlanner planner = ComPlanner::kPsp;
   PspWeight weight = PspWeight::kGaussian;

@@ -1,4 +1,4 @@
-// The CoM's horizontal target: a weighted mean of the feet's support polygon (PSP).
+// Horizontal target of the CoM: weighted mean of the feet's projected support polygon (PSP).
 #pragma once
 
 #include <optional>
@@ -11,44 +11,47 @@
 
 namespace pirouette {
 
-/// Bump over a phase: 0 at `progress` 0 and 1, 1 at the middle, symmetric. `width` as in
+/// Bump over a phase, in [0, 1]: 0 at `progress` 0 and 1, 1 at the middle, symmetric. `width` as in
 /// ComConfig::width; the polynomial ignores it.
 /// [Zhu21] Eq. (16), normalised (E18): docs/equations.md#eq-16
 double psp_bump(PspWeight family, double width, double progress);
 
-/// Vertex weight of a foot (E18): largest in mid-stance, `swing_weight_min` in mid-swing, equal on
-/// both sides of a switch, where even its slope agrees.
+/// Vertex weight of a foot (E18): largest in mid-stance, `swing_weight_min` in mid-swing; value and
+/// slope are continuous at a switch between stance and swing.
 double psp_weight(bool stance, double bump, double duty, double swing_weight_min);
 
-/// Weighted mean of `points` (m); absent when the weights sum to zero.
+/// Weighted mean (m) of `points` (m); absent when the weights sum to zero.
 /// [Zhu21] Eqs. (17)-(18), corrected (E19): docs/equations.md#eq-18
 std::optional<Vec2> weighted_centroid(const PerLeg<Vec2>& points, const PerLeg<double>& weights);
 
-/// Target on the line of the stance feet (E20): in mid-swing the midpoint of the stance diagonal,
-/// at its ends (`bump` 0) the crossing with the swing diagonal. Absent when the diagonals are close
-/// to parallel or cross outside the stance diagonal.
+/// Target (m) on the line of the stance feet (E20): in mid-swing the midpoint of the stance
+/// diagonal, at its ends (`bump` 0) the crossing with the swing diagonal. Absent when the diagonals
+/// are close to parallel or cross outside the stance diagonal.
 std::optional<Vec2> on_diagonal_target(const Vec2& stance_a, const Vec2& stance_b,
                                        const Vec2& swing_a, const Vec2& swing_b, double bump);
 
-/// Weight of a foot in the ancestor of the PSP: [Bledt18], eq. 10, one sigma for all its terms.
+/// Weight of a foot in the planner that the PSP comes from: [Bledt18], eq. 10, one sigma for all
+/// its terms.
 double bledt2018_weight(bool stance, double progress, double sigma);
 
-/// m, target of that ancestor, from its virtual predictive support polygon: [Bledt18], eqs. 11-12.
+/// Target (m) of that planner, from its virtual predictive support polygon: [Bledt18], eqs. 11-12.
 Vec2 bledt2018_target(const PerLeg<Vec2>& feet, const PerLeg<double>& weights);
 
+/// Input of CentreOfMassPlanner::update(); points are horizontal, world axes.
 struct ComPlannerInput {
-  GaitPhase gait;
+  GaitPhase gait;                                             ///< phase of each leg
   PerLeg<Vec2> contact = PerLeg<Vec2>::filled(Vec2::Zero());  ///< m, where a foot in stance stands
   PerLeg<Vec2> lift_off =
       PerLeg<Vec2>::filled(Vec2::Zero());  ///< m, where a foot in swing last stood
-  PerLeg<Vec2> next_foothold = PerLeg<Vec2>::filled(Vec2::Zero());  ///< m
-  PerLeg<bool> touching{};
+  PerLeg<Vec2> next_foothold = PerLeg<Vec2>::filled(Vec2::Zero());  ///< m, contact points
+  PerLeg<bool> touching{};                                          ///< feet on the ground
   Vec2 reference = Vec2::Zero();  ///< m, path reference of the CoM
-  Vec2 com = Vec2::Zero();        ///< m, measured
+  Vec2 com = Vec2::Zero();        ///< m, estimated CoM
 };
 
+/// Output of CentreOfMassPlanner::update().
 struct ComTarget {
-  ComPlan plan;
+  ComPlan plan;             ///< target of the CoM
   PerLeg<double> weight{};  ///< vertex weights, each in [swing_weight_min, 1]
 };
 
@@ -57,10 +60,12 @@ struct ComTarget {
 /// to the path reference that is reached within a stride at the speed limit.
 class CentreOfMassPlanner {
  public:
+  /// No offset from the path reference.
   explicit CentreOfMassPlanner(const ComConfig& config) : config_(config) {}
 
+  /// Target after one tick of `dt` (s).
   ComTarget update(const ComPlannerInput& in, double dt) noexcept;
-  void reset() noexcept;
+  void reset() noexcept;  ///< no offset from the path reference
 
   /// See base/memory.hpp.
   template <class Self, class Visit>
@@ -70,8 +75,8 @@ class CentreOfMassPlanner {
   }
 
  private:
-  /// A foot as the planner sees it: (weight, x, y). Where the real contact is early or late, weight
-  /// and position jump; the jump fades away instead.
+  /// Vertex of one foot: (weight, x, y). At an early or late contact weight and position jump, and
+  /// the jump is faded out.
   struct Vertex {
     Vec3 nominal = Vec3::Zero();
     Vec3 jump = Vec3::Zero();  ///< before minus after

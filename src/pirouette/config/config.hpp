@@ -1,4 +1,4 @@
-// Everything that a run is made of, as one file of TOML has it.
+// All parameters of a run, as a TOML file holds them.
 #pragma once
 
 #include <string>
@@ -9,9 +9,8 @@
 
 namespace pirouette {
 
-/// The controller's parameters, which in the file stand at the top, beside those of the world and
-/// of the trial. Each part takes its own: a SpinController a ControllerConfig, a Plant a
-/// WorldConfig.
+/// The parameters of the controller, at the top level of the file, and those of the world and of
+/// the trial. A SpinController takes its ControllerConfig, a Plant its WorldConfig.
 struct Config : ControllerConfig {
   std::string robot = "mini_cheetah";
   std::string controller = "pirouette";

@@ -1,5 +1,4 @@
-// Every parameter described in words: the source of the dump, the documentation and the error
-// texts.
+// Description of every parameter, for the dump, the documentation and the error texts.
 #pragma once
 
 #include <string>
@@ -9,26 +8,28 @@ namespace pirouette {
 
 struct Config;
 
+/// Description of one parameter.
 struct ParameterInfo {
   std::string key;      ///< dotted, such as gait.period
   std::string name;     ///< last part of the key
   std::string value;    ///< as a TOML literal
   std::string unit;     ///< empty where there is none; "1" for a pure number
   std::string allowed;  ///< "0.15 to 2", "centre, rolling", "true, false"; empty for free text
-  std::string meaning;
+  std::string meaning;  ///< a sentence
 };
 
 /// One TOML table. The first group of a Config has an empty key and holds robot and controller.
 struct ParameterGroup {
-  std::string key;
-  std::string meaning;
-  std::vector<ParameterInfo> parameters;
+  std::string key;                        ///< dotted; empty for the first group
+  std::string meaning;                    ///< a sentence
+  std::vector<ParameterInfo> parameters;  ///< in the order of the fields
 };
 
 /// All parameters with the values of `config`, in the order of config.hpp, parents before children.
 std::vector<ParameterGroup> describe(const Config& config);
 
-/// Complete TOML with unit, range and meaning beside each value; loading it gives the same Config.
+/// The complete TOML text with unit, range and meaning beside each value; loading it gives the same
+/// Config.
 std::string dump_toml(const Config& config);
 
 /// Shortest TOML float that reads back as the same double: 0.1, 5.0, 2e-4.

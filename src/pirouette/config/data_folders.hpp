@@ -1,4 +1,4 @@
-// Where the files are that a Config refers to by name: robots, bundles, profiles.
+// Files that a Config refers to by name: robots, bundles, profiles.
 #pragma once
 
 #include <filesystem>
@@ -11,19 +11,20 @@ namespace pirouette {
 
 struct Config;
 
-/// The folder that holds config/, experiments/ and robots/: the environment's PIROUETTE_DATA_DIR;
-/// share/pirouette in the prefix of the program or shared library; of a program in the build tree
-/// the source tree; as installed; the source tree: the first that exists.
+/// The folder that holds config/, experiments/ and robots/. The first of these that exists:
+/// PIROUETTE_DATA_DIR of the environment; share/pirouette in the prefix of the program or shared
+/// library; for a program in the build tree the source tree; the place of installation; the source
+/// tree.
 std::filesystem::path data_dir();
 
 /// Path of the robot's MJCF: robots/<robot>/<robot>.xml of the data folder, or config.robot itself
-/// when that ends in .xml.
+/// when that ends in .xml. An error for a robot that does not exist lists the known ones.
 Result<std::string> resolve_robot(const Config& config);
 
-/// Names under robots/, config/controllers/ and config/plants/ of the data folder, sorted.
+/// Names under robots/ of the data folder, sorted.
 std::vector<std::string> known_robots();
-std::vector<std::string> known_controllers();
-std::vector<std::string> known_profiles();
+std::vector<std::string> known_controllers();  ///< under config/controllers/, sorted
+std::vector<std::string> known_profiles();     ///< under config/plants/, sorted
 
 /// Names of the TOML files in `folder` without their extension, sorted.
 std::vector<std::string> toml_stems(const std::filesystem::path& folder);

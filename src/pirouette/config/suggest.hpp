@@ -1,4 +1,4 @@
-// Words for error texts: which known name was probably meant, and which names there are.
+// Names in error texts: the one that was probably meant and those that exist.
 #pragma once
 
 #include <optional>
@@ -8,20 +8,21 @@
 
 namespace pirouette {
 
-/// The candidate that `given` probably meant, if one is near. The last part of a dotted key counts
-/// by itself too, so that a key in the wrong table finds its home.
+/// The candidate nearest to `given`; absent when none is near. The last part of a dotted key is
+/// also compared by itself, so that a key in the wrong table is found.
 std::optional<std::string> nearest(std::string_view given,
                                    const std::vector<std::string>& candidates);
 
 /// "a, b, c".
 std::string joined(const std::vector<std::string>& names);
 
+/// `text` in quotes.
 std::string in_quotes(std::string_view text);
 
-/// The value of a TOML literal as a user names it.
+/// A TOML literal without the quotes of a string.
 std::string without_quotes(const std::string& literal);
 
-/// What was given, which names are allowed and which was probably meant.
+/// Error text: `given`, the allowed names and the nearest one.
 std::string unknown_name(std::string_view given, const std::vector<std::string>& known);
 
 }  // namespace pirouette

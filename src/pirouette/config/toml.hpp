@@ -1,5 +1,5 @@
-// From TOML files and command-line overrides to a Config; the way back is config_doc.hpp. The only
-// place that reads TOML.
+// Config from TOML files and command-line overrides; config_doc.hpp writes it. Only config/ and
+// study/ read TOML.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace pirouette {
 
-/// What the user chose. Layers from the lowest to the highest, each overriding those before it:
-/// the defaults in config.hpp; config/robots/<robot>.toml, where it exists;
+/// What the user gave. Layers from the lowest to the highest, each overriding those before it: the
+/// defaults in config.hpp; config/robots/<robot>.toml, if it exists;
 /// config/controllers/<controller>.toml; config/plants/<profile>.toml; `file`; `overrides` in their
 /// order. `robot`, `controller` and `profile` themselves come from the highest of: the fields here,
 /// `overrides`, `file`.
@@ -27,7 +27,7 @@ struct ConfigSources {
   std::vector<std::string> overrides = {};
 };
 
-/// The checked configuration, or everything that is wrong with it at once.
+/// The checked configuration, or all errors in its sources.
 Result<Config> load_config(const ConfigSources& sources = {});
 
 }  // namespace pirouette

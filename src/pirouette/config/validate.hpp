@@ -1,4 +1,4 @@
-// What ranges of single parameters cannot express.
+// Checks that ranges of single parameters cannot express.
 #pragma once
 
 #include "pirouette/base/result.hpp"
@@ -7,8 +7,8 @@ namespace pirouette {
 
 struct Config;
 
-/// Relations between parameters, and the files of robot and path. Part of load_config; call it
-/// after changing a Config in code. Empty: all is well.
+/// Errors in relations between parameters and in the files of robot and path; empty: none. Part of
+/// load_config; call it after changing a Config in code.
 Errors validate(const Config& config);
 
 }  // namespace pirouette

@@ -1,4 +1,4 @@
-// Clock and posture.
+// Parameters of the control clock and the posture.
 #pragma once
 
 #include <array>
@@ -7,6 +7,7 @@
 
 namespace pirouette {
 
+/// Parameters `control.*`.
 struct ControlConfig {
   double rate = 500.0;
 
@@ -16,6 +17,7 @@ struct ControlConfig {
   }
 };
 
+/// Parameters `body.*`.
 struct BodyConfig {
   double height = 0.27;
   std::array<double, 2> stance_offset = {0.0, 0.0};

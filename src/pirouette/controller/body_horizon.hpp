@@ -9,21 +9,23 @@
 
 namespace pirouette {
 
+/// Input of body_reference(), all of this tick.
 struct HorizonInput {
-  PathPoint path;
-  TwistCommand twist;
-  ComPlan com_plan;
-  TerrainPlane plane;
+  PathPoint path;            ///< path reference
+  TwistCommand twist;        ///< the tracker's velocity command
+  ComPlan com_plan;          ///< the CoM planner's target
+  TerrainPlane plane;        ///< estimated ground plane
   Vec2 p_WG = Vec2::Zero();  ///< m, measured CoM: the position reference stays near it
   double yaw = 0.0;          ///< rad, measured; the twist is in its heading axes
   double com_height = 0.0;   ///< m, above `plane`, along gravity
   double max_lead = 0.03;    ///< m, largest distance of the position reference from the CoM
 };
 
-/// What the body should do at this moment.
+/// Reference of the body at this moment.
 BodyReference body_reference(const HorizonInput& in) noexcept;
 
-/// The same reference carried `t` seconds along its twist, parallel to the plane.
+/// `reference` moved along its twist for `t` (s), parallel to the plane; `com_height` (m) above the
+/// plane, along gravity.
 BodyMotion reference_after(const BodyReference& reference, const TerrainPlane& plane,
                            double com_height, double t) noexcept;
 

@@ -1,4 +1,5 @@
-// Last station before the motors: filter, rate limit, finite check, in that order.
+// Filter, rate limit and finite check of the joint command, in that order, before it is sent to the
+// motors.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -8,17 +9,19 @@
 
 namespace pirouette {
 
+/// Limits of the joint command. Remembers the last torques and angles sent.
 class CommandGuard {
  public:
+  /// `legs` holds the limits of torque and angle.
   CommandGuard(const JointConfig& config, const PerLeg<LegGeometry>& legs)
       : config_(config), legs_(legs) {}
 
   /// Low-passes the feed-forward torque, keeps torques and angles within the robot's limits and
-  /// limits the rate of both. False: `raw` held a value that is not finite; `command` is then left
-  /// as it was.
+  /// limits the rate of both over `dt` (s). Returns false and leaves `command` unchanged when a
+  /// value of `raw` is not finite.
   bool update(const JointCommand& raw, double dt, JointCommand& command) noexcept;
 
-  /// The next update starts from `measured` joint angles and no torque.
+  /// The next update starts from the `measured` joint angles (rad) and no torque.
   void reset(const PerLeg<Vec3>& measured) noexcept;
 
   /// See base/memory.hpp.
@@ -35,8 +38,8 @@ class CommandGuard {
   PerLeg<Vec3> q_{};
 };
 
-/// Pure joint damping: the stated safe state after every failure. The legs give way slowly and the
-/// robot sinks.
+/// Command of pure joint damping `kd` (N m s/rad): the safe state after every failure, in which the
+/// robot sinks slowly.
 JointCommand damped_stand_down(double kd);
 
 }  // namespace pirouette

@@ -1,15 +1,15 @@
-// A foot's contact flag without its chatter.
+// Debounced contact flag of a foot.
 #pragma once
 
 namespace pirouette {
 
-/// The flag changes when the raw one has differed from it for `ticks` updates in a row; with 1 it
-/// is the raw one.
+/// Contact flag that changes when the raw flag has differed from it for `ticks` updates in a row;
+/// with 1 it equals the raw flag.
 class ContactDebounce {
  public:
-  explicit ContactDebounce(int ticks) : ticks_(ticks) {}
+  explicit ContactDebounce(int ticks) : ticks_(ticks) {}  ///< `ticks` >= 1
 
-  /// The flag after one more sample of the raw one.
+  /// The flag after one more sample `raw`.
   bool update(bool raw) noexcept {
     changed_for_ = raw == flag_ ? 0 : changed_for_ + 1;
     if (changed_for_ >= ticks_) {
@@ -19,10 +19,10 @@ class ContactDebounce {
     return flag_;
   }
 
-  /// Takes `flag` at once: it is no sample of a sensor.
+  /// Sets the flag at once, without debouncing, and returns it.
   bool set(bool flag) noexcept { return flag_ = flag; }
 
-  void reset() noexcept { *this = ContactDebounce(ticks_); }
+  void reset() noexcept { *this = ContactDebounce(ticks_); }  ///< flag false
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

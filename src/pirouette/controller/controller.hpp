@@ -1,4 +1,4 @@
-// What a loop asks of a controller, whoever wrote it.
+// Interface between the control loop and a controller.
 #pragma once
 
 #include <cstddef>
@@ -12,34 +12,35 @@
 
 namespace pirouette {
 
-/// Wall-clock cost of the last tick; kept out of TickTrace, which must be reproducible.
+/// Wall-clock times of the last tick; not in TickTrace, which must be reproducible.
 struct TickTiming {
-  double mpc_us = 0.0;  ///< 0 in ticks that did not solve the MPC
-  double wbc_us = 0.0;
+  double mpc_us = 0.0;  ///< us, MPC solution; 0 in ticks without one
+  double wbc_us = 0.0;  ///< us, whole-body control
 };
 
-/// Sensor readings and a motion command in, joint commands out.
+/// Controller of a quadruped: sensor readings and a motion command in, joint commands out.
 class Controller {
  public:
   virtual ~Controller() = default;
 
-  /// Forgets what it has learnt and starts from the pose `start`.
+  /// Discards what it has learnt and starts from the pose `start`.
   virtual void reset(const BasePose& start) = 0;
 
-  /// One control period. No exception, no I/O.
+  /// Joint command of one control period, valid until the next call. No exception, no I/O.
   virtual const JointCommand& tick(const SensorReading& sensors,
                                    const MotionCommand& command) noexcept = 0;
 
+  /// Status after the last tick.
   virtual ControllerStatus status() const noexcept = 0;
 
-  /// Where the controller believes the robot to be; nullptr for one that does not estimate.
+  /// Estimated state of the robot; nullptr if the controller estimates none.
   virtual const RobotState* estimate() const noexcept { return nullptr; }
 
-  /// All that the controller remembers, for restore(); empty for one that cannot tell.
+  /// State of the controller as bytes, for restore(); empty if it supports no snapshots.
   virtual std::vector<std::byte> snapshot() const { return {}; }
 
-  /// Puts the controller where the one was that gave `snapshot`, which has the same configuration
-  /// and version. False: it does not fit; the controller is then as it was.
+  /// Restores the state of a snapshot() of a controller with the same configuration and version.
+  /// Returns false and changes nothing when `snapshot` does not fit.
   virtual bool restore(std::span<const std::byte> snapshot) {
     static_cast<void>(snapshot);
     return false;

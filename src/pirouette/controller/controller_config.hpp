@@ -1,4 +1,4 @@
-// Every parameter of the controller: what goes on a robot.
+// All parameters of the controller; none of the simulated world.
 #pragma once
 
 #include "pirouette/com/com_config.hpp"
@@ -15,6 +15,7 @@
 
 namespace pirouette {
 
+/// Parameters of a SpinController.
 struct ControllerConfig {
   ControlConfig control;
   BodyConfig body;
@@ -48,7 +49,7 @@ struct ControllerConfig {
     v(s.mpc, "mpc", "Convex model predictive control.");
     v(s.wbc, "wbc", "Whole-body control.");
     v(s.joint, "joint", "Joint-level gains and limits.");
-    v(s.safety, "safety", "When the controller gives up.");
+    v(s.safety, "safety", "Limits at which the controller stands down.");
   }
 };
 

@@ -1,4 +1,4 @@
-// Where the feet are to land, and how those in the air get there.
+// Footholds and swing targets of all feet.
 #pragma once
 
 #include "pirouette/controller/ground_sense.hpp"
@@ -17,44 +17,46 @@
 
 namespace pirouette {
 
-/// The stance that the robot works in.
+/// Nominal posture: joint angles, CoM and footholds.
 struct NominalStance {
-  PerLeg<Vec3> q{};           ///< rad
-  Vec3 p_BG = Vec3::Zero();   ///< m, CoM
+  PerLeg<Vec3> q{};           ///< rad, joint angles
+  Vec3 p_BG = Vec3::Zero();   ///< m, CoM in trunk axes
   PerLeg<Vec2> foothold_H{};  ///< m, from the CoM, heading axes
 };
 
-/// All of this tick.
+/// Input of FootPlanner::footholds(), all of this tick.
 struct FootholdsInput {
-  const RobotState& state;
-  const GaitPhase& gait;
-  bool recovering = false;  ///< from a push: footholds go to the capture point
-  const TwistCommand& twist;
-  const TerrainPlane& plane;
-  const GroundEstimate& ground;
+  const RobotState& state;       ///< estimated state of the robot
+  const GaitPhase& gait;         ///< phase of each leg
+  bool recovering = false;       ///< from a push: footholds are at the capture point
+  const TwistCommand& twist;     ///< the tracker's velocity command
+  const TerrainPlane& plane;     ///< estimated ground plane
+  const GroundEstimate& ground;  ///< kind of ground
 };
 
-/// All of this tick.
+/// Input of FootPlanner::swing_targets(), all of this tick.
 struct SwingTargetsInput {
-  const RobotState& state;
-  const GaitPhase& gait;
-  const FootContacts& contacts;
+  const RobotState& state;           ///< estimated state of the robot
+  const GaitPhase& gait;             ///< phase of each leg
+  const FootContacts& contacts;      ///< contact of each foot
   const PerLeg<Vec3>& p_WF_liftoff;  ///< m, sphere centres where the swings began
-  const FootholdPlan& footholds;
-  const GroundEstimate& ground;
+  const FootholdPlan& footholds;     ///< planned footholds
+  const GroundEstimate& ground;      ///< kind of ground
 };
 
-/// Remembers nothing.
+/// Plans footholds and swing targets. Has no state.
 class FootPlanner {
  public:
+  /// `com_height` (m) above the ground.
   FootPlanner(const FootholdConfig& foothold, const GaitConfig& gait, double com_height,
               const RollingFoot& foot, const PerLeg<LegGeometry>& legs,
               const NominalStance& stance);
 
-  /// On stepped ground `memory` moves the footholds off the edges that it knows.
+  /// Next foothold of each leg. On stepped ground `memory` moves them off known edges.
   FootholdPlan footholds(const FootholdsInput& in, const GroundSense& memory) const noexcept;
 
-  /// A foot in contact stays where it is and rolls.
+  /// Target of each foot: on the swing trajectory in the air; present position and rolling velocity
+  /// in contact.
   PerLeg<SwingTarget> swing_targets(const SwingTargetsInput& in) const noexcept;
 
  private:

@@ -1,4 +1,4 @@
-// When the MPC is solved, from what, and what holds in between.
+// Contact forces of the MPC: when it is solved, its input, and the forces between solutions.
 #pragma once
 
 #include "pirouette/gait/gait_clock.hpp"
@@ -14,22 +14,22 @@
 
 namespace pirouette {
 
-/// All of this tick.
+/// Input of ForcePlanner::update(), all of this tick.
 struct ForcePlannerInput {
-  const RobotState& state;
-  const GaitPhase& gait;
-  const GaitClock& clock;  ///< foresees the stances of the horizon
-  const FootContacts& contacts;
-  const TerrainPlane& plane;
-  const FootholdPlan& footholds;
-  const BodyReference& reference;
+  const RobotState& state;         ///< estimated state of the robot
+  const GaitPhase& gait;           ///< phase of each leg
+  const GaitClock& clock;          ///< predicts the stances over the horizon
+  const FootContacts& contacts;    ///< contact of each foot
+  const TerrainPlane& plane;       ///< estimated ground plane
+  const FootholdPlan& footholds;   ///< planned footholds
+  const BodyReference& reference;  ///< body reference
 };
 
-/// Solves every mpc.ticks_per_solve ticks and whenever the contact set changes.
+/// Solves the MPC every mpc.ticks_per_solve ticks and whenever the contact set changes.
 class ForcePlanner {
  public:
-  /// `standing_period` (s) stands in for the stride's while the robot does not walk; `com_height`
-  /// in m above the plane.
+  /// `standing_period` (s) replaces the stride's period while the robot does not walk; `com_height`
+  /// (m) above the plane; `mass` (kg); `inertia_B` (kg m^2) about the CoM, trunk axes.
   ForcePlanner(const MpcConfig& config, double standing_period, double com_height, double mass,
                const Mat3& inertia_B)
       : config_(config),
@@ -37,12 +37,13 @@ class ForcePlanner {
         com_height_(com_height),
         mpc_(config, mass, inertia_B) {}
 
-  /// Forces of the last solution that worked; kHeld since one has not.
+  /// Forces of the last successful solution; status kHeld while solutions have failed since.
   ContactForces update(const ForcePlannerInput& in) noexcept;
 
-  int failures() const { return failures_; }     ///< in a row
-  double solve_us() const { return solve_us_; }  ///< us, of the last update; 0: it did not solve
-  void reset() noexcept;
+  int failures() const { return failures_; }  ///< failed solutions in a row
+  /// us, of the last update; 0: the MPC was not solved
+  double solve_us() const { return solve_us_; }
+  void reset() noexcept;  ///< no forces planned, no failures
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

@@ -1,4 +1,4 @@
-// Which gait the robot walks now: stride and duty by rule, and the clock that runs them.
+// Stride period and duty factor by rule, and the gait clock that uses them.
 #pragma once
 
 #include <optional>
@@ -11,32 +11,35 @@
 
 namespace pirouette {
 
-/// `last_...`: of the tick before.
+/// Input of GaitTiming::update(). `last_...`: of the tick before.
 struct GaitTimingInput {
-  const MotionCommand& command;
-  const Vec3& v_WG_W;                        ///< m/s
-  const Vec3& last_reference_v_WG_W;         ///< m/s
-  std::optional<double> last_path_yaw_rate;  ///< rad/s; absent: the command's counts
-  bool last_walking = false;
-  bool last_stepped = false;  ///< the ground has steps
+  const MotionCommand& command;              ///< of this tick
+  const Vec3& v_WG_W;                        ///< m/s, estimated velocity of the CoM, world axes
+  const Vec3& last_reference_v_WG_W;         ///< m/s, its reference, world axes
+  std::optional<double> last_path_yaw_rate;  ///< rad/s; absent: the command's yaw rate is used
+  bool last_walking = false;                 ///< the gait ran
+  bool last_stepped = false;                 ///< the ground has steps
 };
 
+/// Output of GaitTiming::update().
 struct GaitTimingOutput {
-  GaitPhase gait;
+  GaitPhase gait;           ///< phase of each leg
   bool recovering = false;  ///< from a push
 };
 
-/// The yaw rate shortens the stride, steps lengthen the stance; both take effect at the next
-/// touchdown. A push shortens the stride at once.
+/// A high yaw rate shortens the stride and steps raise the duty factor, both from the next
+/// touchdown on. A push shortens the stride at once.
 class GaitTiming {
  public:
+  /// Starts standing.
   explicit GaitTiming(const GaitConfig& config)
       : config_(config), push_recovery_(config), clock_(config) {}
 
+  /// Phases `dt` (s) after the previous call.
   GaitTimingOutput update(const GaitTimingInput& in, double dt) noexcept;
-  void reset() noexcept;
+  void reset() noexcept;  ///< standing, no recovery
 
-  const GaitClock& clock() const { return clock_; }
+  const GaitClock& clock() const { return clock_; }  ///< for predictions
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

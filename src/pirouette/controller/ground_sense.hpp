@@ -1,4 +1,4 @@
-// The ground as the feet have met it: plane, kind of ground, remembered treads.
+// Ground estimate from the footholds: plane, kind of ground, remembered treads.
 #pragma once
 
 #include "pirouette/terrain/foothold_memory.hpp"
@@ -12,30 +12,34 @@
 
 namespace pirouette {
 
-/// All of this tick.
+/// Input of GroundSense::update(), all of this tick.
 struct GroundSenseInput {
-  const FootContacts& contacts;
-  const GaitPhase& gait;
-  const RobotState& state;
+  const FootContacts& contacts;  ///< contact of each foot
+  const GaitPhase& gait;         ///< phase of each leg
+  const RobotState& state;       ///< estimated state of the robot
 };
 
+/// Output of GroundSense::update().
 struct GroundSenseOutput {
-  TerrainPlane plane;
-  GroundEstimate ground;
-  int remembered_treads = 0;  ///< of the stairs in the foothold memory
+  TerrainPlane plane;         ///< estimated ground plane
+  GroundEstimate ground;      ///< kind of ground
+  int remembered_treads = 0;  ///< number of treads in the foothold memory
 };
 
+/// Estimates the ground from the footholds.
 class GroundSense {
  public:
+  /// `foot_radius` (m) of the rolling foot; 0 for a point foot.
   GroundSense(const TerrainConfig& config, double foot_radius);
 
-  /// The ground is the plane through `contacts` (m) until feet say otherwise.
+  /// Starts with, and returns, the plane through the contact points `contacts` (m, world).
   TerrainPlane start(const std::array<Vec3, kLegCount>& contacts);
 
+  /// Estimate after one tick of `dt` (s).
   GroundSenseOutput update(const GroundSenseInput& in, double dt) noexcept;
 
-  /// On stepped ground: the planned foothold moved off the edges that the memory knows, at the
-  /// height of its tread. `centre_offset` (m) is the sphere centre's height above the contact.
+  /// `planned`, on stepped ground moved off remembered edges and to the height of its tread.
+  /// `centre_offset` (m) is the sphere centre's height above the contact.
   Foothold adapted(const Foothold& planned, double centre_offset) const noexcept;
 
   /// See base/memory.hpp.
@@ -53,7 +57,7 @@ class GroundSense {
   PlaneEstimator plane_estimator_;
   GroundClassifier classifier_;
   FootholdMemory memory_;
-  PerLeg<int> remembered_stride_{};  ///< last stance of each leg that was taken down
+  PerLeg<int> remembered_stride_{};  ///< last stride of each leg whose foothold was stored
 };
 
 }  // namespace pirouette

@@ -5,6 +5,7 @@
 
 namespace pirouette {
 
+/// Parameters `joint.*`.
 struct JointConfig {
   double kp_stance = 10.0;
   double kd_stance = 1.0;

@@ -1,4 +1,5 @@
-// From the body's motion to joint commands: whole-body control, joint friction, gains, last checks.
+// Joint commands from the body reference: whole-body control, joint friction, gains, command
+// checks.
 #pragma once
 
 #include "pirouette/controller/command_guard.hpp"
@@ -15,25 +16,27 @@
 
 namespace pirouette {
 
-/// `last_...`: of the tick before.
+/// Input of JointControl::update(). `last_...`: of the tick before.
 struct JointControlInput {
-  const RobotState& state;
-  const FootContacts& contacts;
-  const BodyReference& reference;
-  const PerLeg<SwingTarget>& swing;
-  const ContactForces& mpc;
-  const JointCommand& last_command;
+  const RobotState& state;           ///< estimated state of the robot
+  const FootContacts& contacts;      ///< contact of each foot
+  const BodyReference& reference;    ///< body reference
+  const PerLeg<SwingTarget>& swing;  ///< swing targets
+  const ContactForces& mpc;          ///< forces planned by the MPC
+  const JointCommand& last_command;  ///< joint command sent
 };
 
+/// Output of JointControl::update().
 struct JointControlOutput {
-  ContactForces wbc;
-  JointCommand command;  ///< the last one when no forces are found or it would not be finite
+  ContactForces wbc;     ///< forces of the whole-body control
+  JointCommand command;  ///< the last one when no forces are found or the new one is not finite
   bool finite = true;    ///< false: a value of the new command was not finite
 };
 
+/// Computes the joint command of each tick.
 class JointControl {
  public:
-  /// `foot_radius` (m) is the rolling foot's.
+  /// `foot_radius` (m) of the rolling foot; 0 for a point foot.
   JointControl(const WbcConfig& wbc, const MpcConfig& limits, const JointConfig& joint,
                const PerLeg<LegGeometry>& legs, double foot_radius)
       : config_(joint),
@@ -42,14 +45,14 @@ class JointControl {
         wbc_(wbc, limits),
         guard_(joint, legs) {}
 
-  /// `model` must have been updated at in.state.
+  /// Joint command after one tick of `dt` (s). `model` must have been updated at in.state.
   JointControlOutput update(const JointControlInput& in, const RobotModel& model,
                             double dt) noexcept;
 
-  /// Starts from measured joint angles (rad) and no torque.
+  /// Starts from the `measured` joint angles (rad) and no torque.
   void start(const PerLeg<Vec3>& measured) noexcept;
 
-  int failures() const { return failures_; }     ///< of the whole-body QP, in a row
+  int failures() const { return failures_; }     ///< failures of the whole-body QP in a row
   double solve_us() const { return solve_us_; }  ///< us, of the last update
 
   /// See base/memory.hpp.

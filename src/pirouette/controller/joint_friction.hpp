@@ -1,4 +1,4 @@
-// Feed-forward against the joints' own friction.
+// Feed-forward torque against joint friction.
 #pragma once
 
 #include "pirouette/base/math.hpp"
@@ -6,8 +6,8 @@
 
 namespace pirouette {
 
-/// N m, torque that dry and viscous friction of a leg's joints take at the rates `dq` (rad/s). Dry
-/// friction is smoothed about standstill, so that noise in `dq` does not flip it.
+/// Torque (N m) of dry and viscous friction in a leg's joints at the rates `dq` (rad/s). Dry
+/// friction is smoothed around zero rate, so that noise in `dq` does not flip its sign.
 inline Vec3 joint_friction(const LegGeometry& leg, const Vec3& dq) {
   constexpr double kSmoothRate = 0.05;  // rad/s
   const Vec3 direction = (dq / kSmoothRate).array().tanh();

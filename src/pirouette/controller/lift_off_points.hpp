@@ -1,4 +1,4 @@
-// Where each foot last left the ground.
+// Lift-off point of each foot.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -7,9 +7,10 @@
 
 namespace pirouette {
 
+/// Remembers where each foot last left the ground.
 class LiftOffPoints {
  public:
-  /// m, sphere centres `p_WF` as they were when each foot last left the ground; see start() for a
+  /// Sphere centres `p_WF` (m, world) when each foot last left the ground; those of start() for a
   /// foot that has not.
   const PerLeg<Vec3>& update(const FootContacts& contacts, const PerLeg<Vec3>& p_WF) noexcept {
     for (const Leg leg : kLegs) {
@@ -20,7 +21,8 @@ class LiftOffPoints {
     return p_WF_;
   }
 
-  /// Forgets all contacts; `p_WF` (m) stand in for feet that have not left the ground yet.
+  /// Discards all contacts; `p_WF` (m, world) are the points of feet that have not left the ground
+  /// yet.
   void start(const PerLeg<Vec3>& p_WF) noexcept {
     was_in_contact_ = {};
     p_WF_ = p_WF;

@@ -1,4 +1,5 @@
-// From sensors to state: attitude, leg odometry, contacts and creep, on one foot policy.
+// State estimation from the sensors: attitude, leg odometry, contacts and creep, with one foot
+// model.
 #pragma once
 
 #include "pirouette/controller/contact_debounce.hpp"
@@ -21,55 +22,61 @@
 
 namespace pirouette {
 
-/// What the state is estimated from. `last_...`: of the tick before.
+/// Input of Localization::estimate(). `last_...`: of the tick before.
 struct LocalizationInput {
-  const SensorReading& sensors;
-  const RobotState& last_state;
-  const FootContacts& last_contacts;
-  const GaitPhase& last_gait;
-  const TerrainPlane& last_plane;
-  const GroundEstimate& last_ground;
-  const PerLeg<Vec3>& last_f_W;  ///< N, of the whole-body solution, world axes
-  const JointCommand& last_command;
+  const SensorReading& sensors;       ///< of this tick
+  const RobotState& last_state;       ///< estimated state of the robot
+  const FootContacts& last_contacts;  ///< contact of each foot
+  const GaitPhase& last_gait;         ///< phase of each leg
+  const TerrainPlane& last_plane;     ///< estimated ground plane
+  const GroundEstimate& last_ground;  ///< kind of ground
+  const PerLeg<Vec3>& last_f_W;  ///< N, forces of the whole-body control on the robot, world axes
+  const JointCommand& last_command;  ///< joint command sent
 };
 
+/// Output of Localization::estimate().
 struct LocalizationOutput {
-  RobotState state;
-  PerLeg<FootState> feet{};
-  CreepEstimate creep;
-  Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk
+  RobotState state;                 ///< estimated state of the robot
+  PerLeg<FootState> feet{};         ///< kinematics of each leg
+  CreepEstimate creep;              ///< creep of the stance feet
+  Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk, heading axes
 };
 
-/// What tells where the feet stand. `last_...`: of the tick before.
+/// Input of Localization::find_contacts(). `last_...`: of the tick before.
 struct ContactInput {
-  const std::optional<PerLeg<bool>>& foot_contact;  ///< raw flags; absent: none are measured
-  const PerLeg<bool>& encoder_stuck;
-  const RobotState& state;
-  const PerLeg<FootState>& feet;
-  const GaitPhase& gait;
-  const TerrainPlane& last_plane;
-  const GroundEstimate& last_ground;
+  /// Raw flags; absent: the robot has no contact sensing.
+  const std::optional<PerLeg<bool>>& foot_contact;
+  const PerLeg<bool>& encoder_stuck;  ///< the leg's joint angles are not used
+  const RobotState& state;            ///< estimated state of the robot
+  const PerLeg<FootState>& feet;      ///< kinematics of each leg
+  const GaitPhase& gait;              ///< phase of each leg
+  const TerrainPlane& last_plane;     ///< estimated ground plane
+  const GroundEstimate& last_ground;  ///< kind of ground
 };
 
+/// Estimates the state of the robot and the contacts of its feet.
 class Localization {
  public:
+  /// Call reset() and start() before the first estimate.
   Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs);
 
+  /// Discards all memory and takes attitude and yaw of `start`.
   void reset(const BasePose& start);
 
   /// Starts the odometry at `start` with all feet on the ground, at `joint_position` (rad). Returns
-  /// the state at rest there, without what only estimate() knows: the trunk's pose and `p_WF`.
+  /// the state at rest there, of which only the pose of the trunk and `p_WF` are set.
   RobotState start(const BasePose& start, const PerLeg<Vec3>& joint_position);
 
-  /// The robot's state; also brings `model` to it.
+  /// The robot's state after one tick of `dt` (s); also updates `model` at it.
   LocalizationOutput estimate(const LocalizationInput& in, RobotModel& model, double dt) noexcept;
 
+  /// Contact of each foot: schedule, debounced flags, early contact; `dt` in s.
   FootContacts find_contacts(const ContactInput& in, double dt) noexcept;
 
-  /// Feet whose contact flag is not believed: the schedule stands in for it.
+  /// Feet whose contact flag is not used because it makes no sense (FlagTrust).
   PerLeg<bool> dropped_flags() const noexcept;
 
-  const RollingFoot& foot() const { return foot_; }
+  const RollingFoot& foot() const { return foot_; }  ///< foot model in use
 
   /// See base/memory.hpp.
   template <class Self, class Visit>
@@ -80,7 +87,7 @@ class Localization {
   }
 
  private:
-  /// The trunk's motion as this tick knows it.
+  /// Motion of the trunk in this tick.
   struct Trunk {
     Vec3 p_WB;
     Vec3 v_WB_W;

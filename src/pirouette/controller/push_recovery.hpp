@@ -1,4 +1,4 @@
-// Tells when the robot has been pushed.
+// Detection of pushes.
 #pragma once
 
 #include "pirouette/base/math.hpp"
@@ -6,21 +6,21 @@
 
 namespace pirouette {
 
-/// A robot that moves much faster than it should must step soon: the shorter the time to the next
-/// foothold, the less way the push makes. Recovering begins when the CoM's velocity is off by
-/// gait.recovery_speed, and ends when that has not been so for gait.recovery_time.
+/// Recovery begins when the CoM's velocity error exceeds gait.recovery_speed and ends when it has
+/// not done so for gait.recovery_time. Early steps during it keep the displacement small.
 class PushRecovery {
  public:
-  explicit PushRecovery(const GaitConfig& config) : config_(config) {}
+  explicit PushRecovery(const GaitConfig& config) : config_(config) {}  ///< not recovering
 
-  /// True while recovering. `v_error` (m/s): the CoM's horizontal velocity less its reference.
+  /// True while recovering. `v_error` (m/s) is the CoM's horizontal velocity minus its reference;
+  /// `dt` in s.
   bool update(const Vec2& v_error, double dt) noexcept {
     const bool pushed = v_error.norm() > config_.recovery_speed;
     time_left_ = pushed ? config_.recovery_time : std::max(0.0, time_left_ - dt);
     return time_left_ > 0.0;
   }
 
-  void reset() noexcept { time_left_ = 0.0; }
+  void reset() noexcept { time_left_ = 0.0; }  ///< not recovering
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

@@ -1,4 +1,4 @@
-// When the controller gives up.
+// Limits at which the controller stands down.
 #pragma once
 
 #include <array>
@@ -8,12 +8,14 @@
 
 namespace pirouette {
 
+/// Which parts of the self-check run: StandingCheck.
 enum class SelfCheckMode { kNone, kStill, kTurn };
 template <>
 struct EnumNames<SelfCheckMode> {
   static constexpr std::array<std::string_view, 3> kNames = {"none", "still", "turn"};
 };
 
+/// Parameters `safety.*`.
 struct SafetyConfig {
   SelfCheckMode self_check = SelfCheckMode::kTurn;
   double max_tilt = 0.8;
@@ -45,8 +47,8 @@ struct SafetyConfig {
       "The last good forces are held over this many failed solutions in a row, then the controller "
       "stands down.");
     v(s.max_gyro_step, "max_gyro_step", "rad/s", Range{0.01, 1e6},
-      "An IMU sample whose gyro leaves the last good one by more is a spike: that one stands in, "
-      "for up to max_bad_readings ticks.");
+      "An IMU sample whose gyro differs from the last good one by more is a spike: the last good "
+      "one is used instead, for up to max_bad_readings ticks.");
     v(s.max_accelerometer_step, "max_accelerometer_step", "m/s^2", Range{0.1, 1e6},
       "The same for its accelerometer.");
     v(s.max_repeated_samples, "max_repeated_samples", "ticks", Range{0, 100000},
@@ -55,7 +57,7 @@ struct SafetyConfig {
       "the controller stands down.");
     v(s.max_blind_travel, "max_blind_travel", "rad", Range{0.001, 100.0},
       "An encoder that repeats its angle to the last bit over this much commanded travel is stuck: "
-      "its leg counts no more as odometry. Two such legs: the controller stands down.");
+      "its leg is not used as odometry. With two such legs the controller stands down.");
   }
 };
 

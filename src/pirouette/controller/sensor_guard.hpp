@@ -1,4 +1,4 @@
-// First station of a tick: what of the inputs can be believed.
+// Check of the inputs at the beginning of a tick.
 #pragma once
 
 #include "pirouette/controller/safety_config.hpp"
@@ -8,29 +8,31 @@
 
 namespace pirouette {
 
+/// Checked inputs of a tick.
 struct GuardedInput {
-  SensorReading sensors;
-  MotionCommand command;
-  PerLeg<bool> encoder_stuck{};  ///< the leg's angles are not to be believed
+  SensorReading sensors;         ///< last good values where this reading has none
+  MotionCommand command;         ///< last good one where this one is not finite
+  PerLeg<bool> encoder_stuck{};  ///< the leg's joint angles are not used
 };
 
-/// Bridges what fails for a moment, and tells when a failure lasts:
-///  - a value that is not finite: the last good inputs stand in, one control period on;
-///  - an IMU sample that no trunk could follow: the one before stands in;
-///  - a gyro or an accelerometer that repeats itself to the last bit while the robot walks, which a
-///    live one does not;
-///  - an encoder that repeats itself to the last bit while its joint is commanded to move.
+/// Bridges short failures of the inputs and reports lasting ones:
+///  - a value that is not finite: replaced by the last good inputs, one control period later;
+///  - an IMU sample that differs too much from the one before: replaced by that one;
+///  - a gyro or an accelerometer whose sample repeats to the last bit while the robot walks:
+///    dead;
+///  - an encoder whose angle repeats to the last bit while its joint is commanded to move: stuck.
 class SensorGuard {
  public:
+  /// `period` in s, nominal
   SensorGuard(const SafetyConfig& config, double period) : config_(config), period_(period) {}
 
-  /// False: the inputs have been bad for too long, or there has been no good one yet. `sent` is the
-  /// joint command of the tick before; `walking`: the gait runs.
+  /// Returns false when the inputs have been bad for too long, or none has been good yet. `sent` is
+  /// the joint command of the tick before; `walking`: the gait runs.
   bool update(const SensorReading& sensors, const MotionCommand& command, const JointCommand& sent,
               bool walking) noexcept;
-  void reset() noexcept;
+  void reset() noexcept;  ///< no good input yet
 
-  /// Inputs to work with; good after an update that returned true.
+  /// Checked inputs; valid after an update that returned true.
   const GuardedInput& input() const { return input_; }
 
   /// See base/memory.hpp.

@@ -19,40 +19,42 @@
 
 namespace pirouette {
 
+/// Controller for accurate turns. docs/architecture.md#one-tick
 class SpinController final : public Controller {
  public:
-  /// Loads the robot's own model from `mjcf`.
+  /// Reads the robot model from the file `mjcf`. The errors name the file and what it lacks.
   static Result<SpinController> create(const ControllerConfig& config, const std::string& mjcf);
 
-  SpinController(SpinController&&) noexcept;
-  SpinController& operator=(SpinController&&) noexcept;
+  SpinController(SpinController&&) noexcept;             ///< moves
+  SpinController& operator=(SpinController&&) noexcept;  ///< moves
   ~SpinController() override;
 
-  /// Forgets everything but the path and starts the estimator from `start`.
+  /// Discards all state but the path and starts the estimator from `start`.
   void reset(const BasePose& start) override;
 
-  /// From now on commands are followed along `path`, given in a frame of its own: where walking
-  /// begins (MotionCommand::point and heading, else where the robot stands) the path begins.
-  /// Absent: no path, the command's twist. Not for use within the control loop: it may allocate.
+  /// Follows `path` from now on. The path has its own frame and begins where walking begins: at
+  /// MotionCommand::point and heading, else at the robot. Absent: no path, the command's twist. May
+  /// allocate: not for use within the control loop.
   void follow(std::optional<Path> path);
 
-  /// One control period. No exception, no allocation, no I/O. After a failure that latches
-  /// (is_stood_down) every further command is the damped stand-down until reset().
+  /// Joint command of one control period, valid until the next call. No exception, no allocation,
+  /// no I/O. After a failure that latches (is_stood_down) every further command is the damped
+  /// stand-down until reset().
   const JointCommand& tick(const SensorReading& sensors,
                            const MotionCommand& command) noexcept override;
 
-  /// Everything that coming ticks depend on besides their arguments, configuration and robot: the
-  /// stages' memory, the path, trace(). In the machine's own byte order.
+  /// State that coming ticks depend on besides arguments, configuration and robot: the stages'
+  /// memory, the path, trace(). In the machine's byte order.
   std::vector<std::byte> snapshot() const override;
 
-  /// Goes on bit for bit as the controller did of which `snapshot` was taken, with the same
-  /// configuration and robot. False, and nothing has changed: it is damaged, or of another version.
+  /// Restores a snapshot() of a controller with the same configuration and robot: coming ticks are
+  /// equal bit for bit. Returns false and changes nothing when it is damaged or of another version.
   bool restore(std::span<const std::byte> snapshot) override;
 
-  ControllerStatus status() const noexcept override;
-  const RobotState* estimate() const noexcept override;
-  const TickTrace& trace() const;
-  const TickTiming& timing() const;
+  ControllerStatus status() const noexcept override;     ///< after the last tick
+  const RobotState* estimate() const noexcept override;  ///< never nullptr
+  const TickTrace& trace() const;                        ///< values of the last tick
+  const TickTiming& timing() const;                      ///< of the last tick
 
  private:
   struct Impl;

@@ -1,4 +1,4 @@
-// The time between readings.
+// Period between sensor readings.
 #pragma once
 
 #include <algorithm>
@@ -6,14 +6,14 @@
 
 namespace pirouette {
 
-/// Measures the period from the readings' own times. A reading that is early, late or stamped
-/// wrongly counts as half to ten nominal periods.
+/// Measures the period from the times of the readings, clamped to between half and ten nominal
+/// periods.
 class TickClock {
  public:
   /// `nominal_period` in s.
   explicit TickClock(double nominal_period) : nominal_(nominal_period) {}
 
-  /// s, from the reading before to this one of `time` (s); nominal for the first.
+  /// s, from the reading before to the one at `time` (s); nominal for the first.
   double update(double time) noexcept {
     const double period =
         last_time_ ? std::clamp(time - *last_time_, 0.5 * nominal_, 10.0 * nominal_) : nominal_;
@@ -21,7 +21,7 @@ class TickClock {
     return period;
   }
 
-  void reset() noexcept { last_time_.reset(); }
+  void reset() noexcept { last_time_.reset(); }  ///< no reading yet
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

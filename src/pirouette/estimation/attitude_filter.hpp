@@ -1,4 +1,4 @@
-// Attitude from gyro and accelerometer.
+// Attitude and gyro bias from gyro and accelerometer.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -7,6 +7,7 @@
 
 namespace pirouette {
 
+/// Input of AttitudeFilter::update().
 struct AttitudeInput {
   Vec3 w_WB_B = Vec3::Zero();            ///< rad/s, gyro
   Vec3 specific_force_B = Vec3::Zero();  ///< m/s^2, accelerometer
@@ -15,32 +16,36 @@ struct AttitudeInput {
   PerLeg<Vec3> p_BF{};                   ///< m, sphere centres in trunk axes; used at rest
 };
 
-/// rad, rotation vector of a trunk that stands on four feet and sees them move from `before` to
-/// `now` (m, trunk axes): least squares, small angles.
+/// Rotation vector (rad) of a trunk on four resting feet whose positions in trunk axes change from
+/// `before` to `now` (m): least squares, small angles.
 Vec3 turn_over_feet(const PerLeg<Vec3>& before, const PerLeg<Vec3>& now);
 
+/// Output of AttitudeFilter::update().
 struct Attitude {
-  Mat3 R_WB = Mat3::Identity();
-  Vec3 w_WB_B = Vec3::Zero();  ///< rad/s, gyro without its estimated bias
+  Mat3 R_WB = Mat3::Identity();  ///< trunk axes in world axes
+  Vec3 w_WB_B = Vec3::Zero();    ///< rad/s, gyro without its estimated bias
 };
 
 /// Complementary filter on SO(3): the gyro is integrated, gravity slowly corrects roll and pitch,
-/// and what gravity keeps correcting is gyro bias. Yaw is the gyro's integral: nothing else on
-/// board observes it.
+/// and a lasting correction is taken as gyro bias. Yaw is the integral of the gyro alone: no other
+/// sensor on board observes it.
 ///
 /// The accelerometer measures gravity plus the trunk's own acceleration. In a steady turn the
 /// latter is omega x v for every point of the body, which is subtracted; the gait's part averages
 /// out over the filter's time constant. An accelerometer bias becomes a tilt error of bias / g.
 ///
-/// A robot at rest sags and settles by more than a gyro's bias. Its feet tell how it turned in
-/// truth: the bias is the slope, over the time at rest, of what the gyro's integral adds to that.
+/// A robot at rest sags and settles faster than a gyro's bias. Its feet measure this rotation: the
+/// gyro bias is the slope over the time at rest of the gyro's integral minus that rotation.
 class AttitudeFilter {
  public:
+  /// Starts level at yaw 0, without gyro bias.
   explicit AttitudeFilter(const EstimationConfig& config) : config_(config) {}
 
+  /// Attitude after one tick of `dt` (s).
   Attitude update(const AttitudeInput& in, double dt) noexcept;
+  /// Starts at `R_WB` without gyro bias.
   void reset(const Mat3& R_WB);
-  const Vec3& gyro_bias() const { return gyro_bias_; }
+  const Vec3& gyro_bias() const { return gyro_bias_; }  ///< rad/s, body axes
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

@@ -7,18 +7,21 @@
 
 namespace pirouette {
 
+/// Values of creep.mode.
 enum class CreepModelMode { kOff, kStored, kOnline };
 template <>
 struct EnumNames<CreepModelMode> {
   static constexpr std::array<std::string_view, 3> kNames = {"off", "stored", "online"};
 };
 
+/// Values of estimation.source.
 enum class EstimatorSource { kKalman, kTruth };
 template <>
 struct EnumNames<EstimatorSource> {
   static constexpr std::array<std::string_view, 2> kNames = {"kalman", "truth"};
 };
 
+/// Parameters `estimation.*`.
 struct EstimationConfig {
   EstimatorSource source = EstimatorSource::kKalman;
   double process_position = 1e-9;
@@ -64,15 +67,16 @@ struct EstimationConfig {
     v(s.gyro_bias_time_constant, "gyro_bias_time_constant", "s", Range{1.0, 1e5},
       "Time constant of the gyro-bias estimate while walking.");
     v(s.gyro_rest_samples, "gyro_rest_samples", "samples", Range{0.0, 1e6},
-      "Samples at rest that the prior of no gyro bias is worth: (noise / bias)^2.");
+      "Weight of the prior of no gyro bias, in samples at rest: (noise / bias)^2.");
     v(s.tilt_bias_time, "tilt_bias_time", "s", Range{0.0, 1000.0},
       "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: "
       "off.");
     v(s.contact_debounce, "contact_debounce", "ticks", Range{1, 100},
-      "A contact flag counts when it has been the same for this long.");
+      "A contact flag is used when it has been the same for this long.");
   }
 };
 
+/// Parameters `creep.*`.
 struct CreepConfig {
   CreepModelMode mode = CreepModelMode::kOnline;
   double calibrated_friction = 0.75;

@@ -8,6 +8,7 @@
 
 namespace pirouette {
 
+/// Input of SpinCreep::update().
 struct CreepInput {
   Vec3 n_W = Vec3::UnitZ();   ///< unit normal of the slope
   double twist_rate = 0.0;    ///< rad/s, of the trunk about n_W
@@ -15,21 +16,23 @@ struct CreepInput {
   double normal_force = 0.0;  ///< N, sum of the stance forces along n_W
 };
 
-/// A foot that twists under torsional friction mu_t has no static friction left along the ground:
-/// elliptic Coulomb friction shares one cone between force and moment, so that the slip is
+/// Creep model. A foot that twists under torsional friction mu_t has no static friction along the
+/// ground: elliptic Coulomb friction shares one cone between force and moment, so that the slip is
 ///   v = |w| k f_t / N,   k = mu_t^2 / (mu^2 m),   m = mu_t sqrt(1 - (f_t / (mu N))^2),
 /// with w the twist rate of the foot (the shank's, not the trunk's), f_t the force along the ground
 /// and m the moment per normal force. Leg odometry cannot see it. f_t / N of the mean stance force
 /// follows from gravity and the slope.
 ///
-/// What the feet resist, the stance forces must supply: over whole strides of a steady spin their
-/// mean yaw moment per normal force is m. With the ratio mu_t / mu calibrated that alone gives k.
+/// The stance forces balance the torsional friction: over whole strides of a steady spin their mean
+/// yaw moment per normal force is m. With the ratio mu_t / mu calibrated that alone gives k.
 class SpinCreep {
  public:
+  /// Starts from the calibrated values.
   explicit SpinCreep(const CreepConfig& config) : config_(config) { reset(); }
 
+  /// Estimate after one tick of `dt` (s).
   CreepEstimate update(const CreepInput& in, double dt) noexcept;
-  void reset() noexcept;
+  void reset() noexcept;  ///< back to the calibrated values
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

@@ -1,4 +1,4 @@
-// Which foot model.
+// Parameters of the foot model.
 #pragma once
 
 #include <array>
@@ -7,12 +7,14 @@
 
 namespace pirouette {
 
+/// Values of foot.model.
 enum class FootModel { kCentre, kRolling };
 template <>
 struct EnumNames<FootModel> {
   static constexpr std::array<std::string_view, 2> kNames = {"centre", "rolling"};
 };
 
+/// Parameters `foot.*`.
 struct FootConfig {
   FootModel model = FootModel::kRolling;
 

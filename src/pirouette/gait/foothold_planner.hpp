@@ -1,4 +1,4 @@
-// Where each foot is to land while the body follows a planar twist.
+// Next foothold of each foot while the body follows a planar twist.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -12,13 +12,14 @@
 
 namespace pirouette {
 
-/// m, where a point fixed to the body at `hip` will be after `t` seconds of the twist (`v`,
-/// `yaw_rate`), in the body's heading axes of now.
+/// Position (m) of a body-fixed point after `t` (s) of the twist `v` (m/s), `yaw_rate` (rad/s), in
+/// the present heading axes; `hip` (m) is its present position.
 /// [Zhu21] Eqs. (2)-(4), corrected (E1): docs/equations.md#eq-1
 Vec2 turning_foothold(const Vec2& hip, const Vec2& v, double yaw_rate, double t);
 
+/// Input of FootholdPlanner::update().
 struct FootholdInput {
-  GaitPhase gait;
+  GaitPhase gait;  ///< phase of each leg
   PerLeg<Vec2> nominal_H =
       PerLeg<Vec2>::filled(Vec2::Zero());  ///< m, foothold at mid-stance from the CoM, heading axes
   PerLeg<Vec2> rolling_shift_H = PerLeg<Vec2>::filled(
@@ -26,19 +27,21 @@ struct FootholdInput {
   double centre_offset = 0.0;  ///< m, sphere centre above the contact along the normal
   Vec2 p_WG = Vec2::Zero();    ///< m, CoM
   Vec2 v_WG_H = Vec2::Zero();  ///< m/s, measured velocity of the CoM, heading axes
-  double yaw = 0.0;            ///< rad
-  /// s, least lead with which footholds follow the velocity error: sqrt(height / g), of a linear
-  /// inverted pendulum, puts them at the capture point. 0: Raibert's law alone.
+  double yaw = 0.0;            ///< rad, of the trunk
+  /// s, least gain of the velocity error: sqrt(height / g), the time constant of a linear inverted
+  /// pendulum, puts footholds at the capture point. 0: Raibert's law alone.
   double capture_time = 0.0;
-  TwistCommand twist;
-  TerrainPlane plane;
+  TwistCommand twist;  ///< the tracker's velocity command
+  TerrainPlane plane;  ///< estimated ground plane
 };
 
-/// Each foot lands so that it is at its nominal point in the middle of the coming stance.
+/// Plans footholds so that each foot is at its nominal point in the middle of the coming stance.
+/// Has no state.
 class FootholdPlanner {
  public:
-  explicit FootholdPlanner(const FootholdConfig& config) : config_(config) {}
+  explicit FootholdPlanner(const FootholdConfig& config) : config_(config) {}  ///< `foothold.*`
 
+  /// Next foothold of each leg.
   FootholdPlan update(const FootholdInput& in) const noexcept;
 
  private:

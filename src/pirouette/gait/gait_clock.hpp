@@ -1,4 +1,4 @@
-// The trot's clock: FR with RL, and FL with RR half a stride later.
+// Clock of the trot: FR with RL, and FL with RR half a stride later.
 #pragma once
 
 #include <algorithm>
@@ -10,28 +10,29 @@
 namespace pirouette {
 
 /// A leg's stride begins with its touchdown. The gait starts at the touchdown of FR and RL: with
-/// duty > 0.5 all four feet are down then. A foot that the schedule has in the air at the start
+/// duty > 0.5 all four feet are down then. A foot that is scheduled to swing at the start
 /// stays down until its first lift-off. When the walk ends, feet in the air land on schedule and no
 /// other foot lifts. A foot that stays down reports mid-stance.
 class GaitClock {
  public:
+  /// Starts standing.
   explicit GaitClock(const GaitConfig& config);
 
-  /// Phase `dt` seconds after the previous call; the first call with `walk` is the start itself.
+  /// Phase `dt` (s) after the previous call; the first call with `walk` is the start itself.
   GaitPhase update(bool walk, double dt) noexcept;
 
-  void reset() noexcept;
+  void reset() noexcept;  ///< standing
 
-  /// The leg's phase `t_ahead` >= 0 seconds after the last update, if the current walk, stop or
-  /// rest goes on at the current timing.
+  /// The leg's phase `t_ahead` >= 0 (s) after the last update, if the robot goes on walking,
+  /// stopping or standing as now, with the current timing.
   LegPhase phase_at(Leg leg, double t_ahead) const noexcept;
 
-  /// New timing: the period (s) from the next start of the stride on, the duty factor for each leg
-  /// from its next touchdown on, so no foot is caught in mid-air. Both at once while standing.
+  /// Sets the period (s) from the next start of the stride on and the duty factor in (0, 1) of each
+  /// leg from its next touchdown on, so that no swing changes; while standing, both at once.
   void set_timing(double period, double duty) noexcept;
 
-  /// A shorter period than the present one takes effect now instead: every foot is as far in its
-  /// stance or swing as it was, and the rest of it goes by faster.
+  /// Applies a new period at once if it is shorter than the present one: the progress of every
+  /// stance and swing stays, and the rest of it is faster.
   void hurry() noexcept { period_ = std::min(period_, next_period_); }
 
   /// See base/memory.hpp.

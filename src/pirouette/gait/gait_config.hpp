@@ -8,6 +8,7 @@
 
 namespace pirouette {
 
+/// Parameters `gait.*`.
 struct GaitConfig {
   double period = 0.5;
   double duty = 0.6;
@@ -24,23 +25,24 @@ struct GaitConfig {
   double recovery_period = 0.26;
   double recovery_time = 0.6;
 
-  static constexpr double kMinSwingTime = 0.05;  ///< s; a leg cannot lift, move and land in less
+  /// s, least time in which a leg lifts, moves and lands.
+  static constexpr double kMinSwingTime = 0.05;
 
-  /// s, of a stride whose swing takes that time.
+  /// Stride (s) whose swing takes kMinSwingTime.
   double shortest_stride() const { return kMinSwingTime / (1.0 - duty); }
 
-  /// s, of the stride at a commanded yaw rate (rad/s): shorter where the trunk would turn too far
-  /// in one.
+  /// Stride (s) at a commanded yaw rate (rad/s): shorter than `period` where the trunk would turn
+  /// by more than max_turn_per_stride.
   double period_at(double yaw_rate) const {
     if (std::abs(yaw_rate) * period <= max_turn_per_stride) return period;
     return std::max({std::min(min_period, period), max_turn_per_stride / std::abs(yaw_rate),
                      shortest_stride()});
   }
-  /// On stepped ground, with a stride of `stride` (s).
+  /// Duty factor on stepped ground, with a stride of `stride` (s).
   double step_duty_at(double stride) const {
     return std::max(duty, std::min(step_duty, 1.0 - kMinSwingTime / stride));
   }
-  /// s, of the stride after a push.
+  /// Stride (s) after a push, at a commanded yaw rate (rad/s).
   double recovery_period_at(double yaw_rate) const {
     return std::min(period_at(yaw_rate), std::max(recovery_period, shortest_stride()));
   }
@@ -57,14 +59,13 @@ struct GaitConfig {
     v(s.max_turn_per_stride, "max_turn_per_stride", "rad", Range{0.1, 10.0},
       "The stride is shortened below gait.period where the commanded yaw rate would turn the trunk "
       "by more.");
-    v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "That rule shortens no further.");
+    v(s.min_period, "min_period", "s", Range{0.1, 2.0}, "Lower limit of that rule.");
     v(s.adapt, "adapt",
       "Duty and swing height follow the ground that the feet have met, the stride follows pushes.");
     v(s.step_duty, "step_duty", "1", Range{0.4, 0.9}, "Duty on stepped ground, if more than duty.");
     v(s.step_clearance, "step_clearance", "m", Range{0.0, 0.2},
       "On stepped ground the swing's apex is this far above the highest step met.");
-    v(s.max_swing_height, "max_swing_height", "m", Range{0.005, 0.3},
-      "The rule raises the apex no further.");
+    v(s.max_swing_height, "max_swing_height", "m", Range{0.005, 0.3}, "Upper limit of that rule.");
     v(s.recovery_speed, "recovery_speed", "m/s", Range{0.01, 100.0},
       "The robot counts as pushed when the CoM's velocity is off its reference by more. Not on "
       "stepped ground.");
@@ -75,6 +76,7 @@ struct GaitConfig {
   }
 };
 
+/// Parameters `foothold.*`.
 struct FootholdConfig {
   bool feedback = true;
   double velocity_gain = 0.03;

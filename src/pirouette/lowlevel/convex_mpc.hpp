@@ -15,13 +15,12 @@
 
 namespace pirouette {
 
-/// State of the single rigid body: attitude (rad, yaw unwrapped), CoM position, angular velocity
-/// and CoM velocity, all in world axes.
+/// State of the single rigid body, world axes.
 struct BodyMotion {
-  Vec3 rpy = Vec3::Zero();
-  Vec3 p_WG = Vec3::Zero();
-  Vec3 w_WB_W = Vec3::Zero();
-  Vec3 v_WG_W = Vec3::Zero();
+  Vec3 rpy = Vec3::Zero();     ///< rad, yaw unwrapped
+  Vec3 p_WG = Vec3::Zero();    ///< m, CoM
+  Vec3 w_WB_W = Vec3::Zero();  ///< rad/s
+  Vec3 v_WG_W = Vec3::Zero();  ///< m/s, CoM
 };
 
 /// One step of the prediction: the reference at its end, and the ground during it.
@@ -34,28 +33,29 @@ struct MpcStep {
   PerLeg<Vec3> p_WC{};    ///< m, their contact points
 };
 
+/// Input of ConvexMpc::update().
 struct MpcInput {
-  BodyMotion now;
-  std::array<MpcStep, kMaxHorizon> steps{};
-  Vec3 n_W = Vec3::UnitZ();  ///< ground normal for the friction pyramids
+  BodyMotion now;                            ///< present state
+  std::array<MpcStep, kMaxHorizon> steps{};  ///< the first mpc.horizon are used
+  Vec3 n_W = Vec3::UnitZ();  ///< unit normal of the ground, for the friction pyramids
   double dt = 0.03;          ///< s, length of a step
 };
 
 /// [DiCarlo18]: docs/equations.md#convex-mpc, docs/decisions/011-mpc-by-recursion.md.
 ///
 /// The linear dynamics (equations.md section 8) are integrated exactly over each step with forces
-/// held. The optimum without force limits comes from a Riccati recursion; where it leaves a
-/// friction pyramid, an exact active-set solver goes on from there. Swing legs have no variables.
+/// held. The optimum without force limits comes from a Riccati recursion; where it violates a
+/// friction pyramid, an exact active-set solver continues from it. Swing legs have no variables.
 /// The prediction ends at the horizon or before the step that would exceed kMaxForces.
 class ConvexMpc {
  public:
   /// `mass` in kg; `inertia_B` in kg m^2 about the CoM, trunk axes.
   ConvexMpc(const MpcConfig& config, double mass, const Mat3& inertia_B);
 
-  /// Forces of the first step. kFailed: the solver gave up and the forces are zero.
+  /// Forces of the first step. On kFailed they are zero.
   ContactForces update(const MpcInput& in) noexcept;
 
-  /// N, world axes: the whole plan last computed, by step and leg. For tests.
+  /// All forces of the last solution (N, world axes), by step and leg; for tests.
   std::span<const Vec3> plan() const;
 
  private:

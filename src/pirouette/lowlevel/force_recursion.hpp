@@ -11,30 +11,30 @@
 
 namespace pirouette {
 
-inline constexpr int kMaxHorizon = 24;
-/// Forces planned at once. A trot of duty 0.6 has 40 in 16 steps; four feet that stand have them in
-/// 10.
+inline constexpr int kMaxHorizon = 24;  ///< steps
+/// Largest number of forces in a prediction. 16 steps of a trot of duty 0.6 have 40, as have 10
+/// steps on four feet.
 inline constexpr int kMaxForces = 42;
 
 /// Change of the body's state by the forces: attitude (rad), CoM position, angular velocity and CoM
 /// velocity, world axes.
 using BodyDeviation = Eigen::Matrix<double, 12, 1>;
 
-/// A force of the prediction: when, where, and what it does.
+/// A force of the prediction.
 struct PlannedForce {
-  int step = 0;
-  Leg leg = Leg::kFR;
-  Mat3 W;  ///< rad/s per N: change of angular velocity by this force over its step
+  int step = 0;        ///< in which it acts
+  Leg leg = Leg::kFR;  ///< on which it acts
+  Mat3 W;              ///< rad/s per N: change of angular velocity by this force over its step
 };
 
-/// What the forces are to achieve. Forces are ordered by step.
+/// Problem of the recursion. Forces are ordered by step.
 struct ForceProblem {
-  double dt = 0.0;  ///< s, length of a step
-  int steps = 0;
-  int forces = 0;
+  double dt = 0.0;                  ///< s, length of a step
+  int steps = 0;                    ///< of the prediction
+  int forces = 0;                   ///< in all steps
   std::array<Mat3, kMaxHorizon> T;  ///< attitude rate per angular velocity, during a step (E24)
-  std::array<BodyDeviation, kMaxHorizon> free_error;  ///< at a step's end, had no force acted
-  std::array<PlannedForce, kMaxForces> force;
+  std::array<BodyDeviation, kMaxHorizon> free_error;  ///< at a step's end, without forces
+  std::array<PlannedForce, kMaxForces> force;         ///< the first `forces` are used
 };
 
 /// Riccati recursion over single forces: docs/equations.md#force-recursion.
@@ -48,15 +48,16 @@ class ForceRecursion {
   /// `mass` in kg.
   ForceRecursion(const MpcConfig& config, double mass);
 
-  /// The problem, to be filled before `sweep`.
+  /// The problem, to be filled before sweep().
   ForceProblem& problem() { return problem_; }
-  const ForceProblem& problem() const { return problem_; }
+  const ForceProblem& problem() const { return problem_; }  ///< as filled
 
-  /// Backwards, from the horizon's end. False: not positive definite.
+  /// Backward pass, from the end of the horizon. Returns false when the problem is not positive
+  /// definite.
   bool sweep() noexcept;
 
-  /// Forwards: N, the forces f* + J y. `y` may be shorter than the plan; the rest of it counts as
-  /// zero.
+  /// Forward pass: forces `f_W` = f* + J y (N, world axes). `y` may be shorter than the plan; its
+  /// other elements are zero.
   void roll_out(const Eigen::VectorXd& y, std::array<Vec3, kMaxForces>& f_W) const noexcept;
 
   /// Column `j` of J in 3 x 3 blocks: column[i], i = j .. count - 1. Those above are zero.

@@ -1,4 +1,4 @@
-// Linear force limits of a foot on the ground, in the ground's own axes.
+// Linear limits of the force on a foot, in axes of the ground.
 #pragma once
 
 #include "pirouette/base/math.hpp"
@@ -17,9 +17,10 @@ inline constexpr int kPyramidRows = 6;  ///< four faces, the least and the large
 /// Rows of  C f >= lower  for the force on the robot at a contact with normal `n`, world axes:
 /// |f.t1| <= mu f.n, |f.t2| <= mu f.n, f_min <= f.n <= f_max.
 struct FrictionPyramid {
-  Eigen::Matrix<double, kPyramidRows, 3> C;
-  Eigen::Matrix<double, kPyramidRows, 1> lower;
+  Eigen::Matrix<double, kPyramidRows, 3> C;      ///< left-hand side
+  Eigen::Matrix<double, kPyramidRows, 1> lower;  ///< N
 
+  /// `n` is the unit normal; `min_normal` and `max_normal` in N.
   FrictionPyramid(const Vec3& n, double friction, double min_normal, double max_normal) {
     Vec3 t1, t2;
     ground_tangents(n, t1, t2);
@@ -32,7 +33,7 @@ struct FrictionPyramid {
     lower << 0.0, 0.0, 0.0, 0.0, min_normal, -max_normal;
   }
 
-  /// N, per row; negative where `f` violates it.
+  /// C f - lower (N); negative in the rows that `f` (N) violates.
   Eigen::Matrix<double, kPyramidRows, 1> slack(const Vec3& f) const { return C * f - lower; }
 };
 

@@ -7,6 +7,7 @@
 
 namespace pirouette {
 
+/// Parameters `mpc.*`.
 struct MpcConfig {
   int horizon = 16;
   int ticks_per_solve = 12;

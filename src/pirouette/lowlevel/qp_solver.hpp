@@ -11,12 +11,13 @@ namespace pirouette {
 
 /// minimise 1/2 x' H x + g' x  subject to  C x >= lower,  H positive definite.
 ///
-/// The caller fills H, g, C and lower of a problem of the size at hand (`prepare`), then solves.
+/// The caller fills H, g, C and lower of a prepared problem, then solves it.
 /// The unconstrained optimum (one Cholesky factorisation H = L L') is tried first; when it violates
-/// a constraint the exact active-set solver takes over with the factor J = L'^-1, under the
+/// a constraint the exact active-set solver continues with the factor J = L'^-1, under the
 /// iteration cap.
 class QpSolver {
  public:
+  /// n variables, m constraints.
   struct Problem {
     Eigen::MatrixXd H;      ///< n x n, both triangles
     Eigen::VectorXd g;      ///< n
@@ -28,8 +29,8 @@ class QpSolver {
   /// Sizes the workspaces for every problem of `unit * k` variables, k = 1 .. `max_units`, with
   /// `rows_per_unit * k` constraints; at most LeastDistance::kMaxVariables.
   QpSolver(int unit, int rows_per_unit, int max_units, int max_iterations);
-  QpSolver(QpSolver&&) noexcept;
-  QpSolver& operator=(QpSolver&&) noexcept;
+  QpSolver(QpSolver&&) noexcept;             ///< moves
+  QpSolver& operator=(QpSolver&&) noexcept;  ///< moves
   ~QpSolver();
 
   /// The problem of `units` units, to be filled; its matrices keep their last values.

@@ -5,6 +5,7 @@
 
 namespace pirouette {
 
+/// Parameters `wbc.*`.
 struct WbcConfig {
   double orientation_kp = 100.0;
   double orientation_kd = 10.0;

@@ -11,34 +11,37 @@
 
 namespace pirouette {
 
+/// Input of WholeBodyControl::update().
 struct WbcInput {
-  RobotState state;
-  BodyReference reference;
-  PerLeg<SwingTarget> swing{};
-  FootContacts contacts;
-  ContactForces mpc;
+  RobotState state;             ///< estimated state of the robot
+  BodyReference reference;      ///< body reference
+  PerLeg<SwingTarget> swing{};  ///< swing targets
+  FootContacts contacts;        ///< contact of each foot
+  ContactForces mpc;            ///< forces of the MPC
   double contact_radius = 0.0;  ///< m, of the rolling foot; 0 for a point foot
-  Vec3 n_W = Vec3::UnitZ();     ///< ground normal for the friction pyramids
+  Vec3 n_W = Vec3::UnitZ();     ///< unit normal of the ground, for the friction pyramids
 };
 
+/// Output of WholeBodyControl::update().
 struct WbcOutput {
-  ContactForces forces;
+  ContactForces forces;                    ///< refined forces on the robot
   Vec6 trunk_acceleration = Vec6::Zero();  ///< [m/s^2 world; rad/s^2 body]
   PerLeg<Vec3> joint_acceleration{};       ///< rad/s^2
   PerLeg<Vec3> tau{};                      ///< N m, inverse dynamics
   PerLeg<Vec3> q{};                        ///< rad, joint targets of the kinematic level
-  PerLeg<Vec3> dq{};                       ///< rad/s
+  PerLeg<Vec3> dq{};                       ///< rad/s, their velocities
 };
 
 /// [Kim19], solved by legs: docs/decisions/003-whole-body-control.md,
 /// docs/equations.md#whole-body-control.
 ///
 /// The task hierarchy contacts > trunk orientation > CoM position > swing feet has 18 rows for 18
-/// accelerations: with no leg singular it has one solution, which follows leg by leg (3x3) and one
-/// 6x6 solve, the same as the null-space projections give. A small QP then trades the MPC's forces
+/// accelerations: with no leg singular it has one solution, from one 3x3 solve per leg and one 6x6
+/// solve, equal to that of null-space projections. A small QP then trades the MPC's forces
 /// against the trunk acceleration those forces produce with contact-consistent joints.
 class WholeBodyControl {
  public:
+  /// `limits` holds friction, normal forces and the iteration cap.
   WholeBodyControl(const WbcConfig& config, const MpcConfig& limits);
 
   /// `model` must have been updated at in.state.

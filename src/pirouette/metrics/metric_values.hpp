@@ -10,9 +10,10 @@
 namespace pirouette {
 
 /// The numbers of metrics.json by key; a bool is 0 or 1. Without context and wall-clock times, so
-/// equal configurations give equal numbers.
+/// that equal configurations give equal numbers.
 using MetricValues = std::map<std::string, Number>;
 
+/// The numbers of `metrics`; nullopt where absent or not finite.
 MetricValues metric_values(const Metrics& metrics);
 
 /// Keys of MetricValues in the order of metrics.json.

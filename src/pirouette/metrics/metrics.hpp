@@ -1,4 +1,4 @@
-// How good a spin was: the numbers of metrics.json (docs/equations.md#metrics).
+// Metrics of a turn: the numbers of metrics.json (docs/equations.md#metrics).
 #pragma once
 
 #include <cstdint>
@@ -14,25 +14,27 @@
 
 namespace pirouette {
 
-/// Absent: the run gives no sensible value (too short, too few samples); null in metrics.json.
+/// A metric; absent when the run gives no sensible value (too short, too few samples), null in
+/// metrics.json.
 using Number = std::optional<double>;
 
-inline constexpr double kComRate = 100.0;            ///< Hz, to which the CoM is resampled
+inline constexpr double kComRate = 100.0;            ///< Hz, of the resampled CoM
 inline constexpr double kAccelerationCutoff = 20.0;  ///< Hz, of the accelerations' low-pass
 inline constexpr double kRecordLength = 10.0;        ///< s, of one peak-to-peak record
 
-/// What was asked of the robot, in the true world.
+/// The commanded motion, in the true world.
 struct CommandedMotion {
-  Vec2 point = Vec2::Zero();      ///< m
-  Vec2 v_H = Vec2::Zero();        ///< m/s, heading axes
-  double yaw_rate = 0.0;          ///< rad/s
-  bool hold_heading = false;      ///< v_H does not turn with the path
-  std::optional<Path> path = {};  ///< in the world, from where the command came; absent: a spin
+  Vec2 point = Vec2::Zero();  ///< m, commanded point
+  Vec2 v_H = Vec2::Zero();    ///< m/s, heading axes
+  double yaw_rate = 0.0;      ///< rad/s
+  bool hold_heading = false;  ///< the body keeps its heading on the path
+  /// In the world, starting where the command was given; absent: a spin.
+  std::optional<Path> path = {};
 };
 
-/// The recorded part of a run: one entry per control tick in every list but `slip`. A list of what
-/// is not known may stay empty: the metrics that need it are then absent. time, p_WG, v_WG_W and
-/// yaw are always needed.
+/// The recorded part of a run: one entry per control tick in every list but `slip`. A list may be
+/// empty when its values are not known; the metrics that need it are then absent. time, p_WG,
+/// v_WG_W and yaw are always needed.
 struct MotionRecord {
   std::vector<double> time;            ///< s
   std::vector<Vec2> p_WG;              ///< m, true CoM
@@ -51,11 +53,12 @@ struct MotionRecord {
   std::vector<double> slip;  ///< m/s, speed of the contact's material point; of each foot that
                              ///< touches, tick by tick
 
-  /// `yaw` is the true yaw, unwrapped.
+  /// Appends one tick. `yaw` (rad) is the true yaw, unwrapped; `reference_arc_length` in m.
   void add(const PlantTruth& truth, double yaw, const RobotState& estimate,
            double reference_arc_length);
 };
 
+/// Metrics `com.*`.
 struct ComMetrics {
   Number distance_to_point_mean_mm, distance_to_point_max_mm, distance_to_point_p95_mm;
   Number radius_mean_mm, radius_max_mm, radius_variance_mm2;
@@ -67,37 +70,42 @@ struct ComMetrics {
   Number velocity_range_x_mm_s, velocity_range_y_mm_s;
 };
 
+/// Metrics `path.*`.
 struct PathMetrics {
   Number cross_track_mean_mm, cross_track_max_mm, along_track_mean_mm;
 };
 
+/// Metrics `attitude.*`.
 struct AttitudeMetrics {
   Number roll_mean, roll_variance, pitch_mean, pitch_variance;
   Number roll_range, pitch_range;
   Number relative_roll_mean, relative_roll_variance, relative_pitch_mean, relative_pitch_variance;
 };
 
+/// Metrics `acceleration.*`.
 struct AccelerationMetrics {
   Number x_variance, y_variance, roll_variance, pitch_variance;
 };
 
+/// Metrics `contact.*`.
 struct ContactMetrics {
   Number slip_mean_mm_s;
   std::int64_t dropped_flags = 0;  ///< set by the trial
 };
 
+/// Metrics `estimator.*`.
 struct EstimatorMetrics {
   Number position_error_mm, yaw_error_rad, position_drift_per_turn_mm;
 };
 
-/// Wall-clock times; they differ from run to run.
+/// Metrics `timing.*`: wall-clock times, which differ from run to run.
 struct TimingMetrics {
   Number tick_us_median, tick_us_p99, tick_us_max;
   Number mpc_us_median, wbc_us_median, physics_step_us_median;
   Number real_time_factor;
 };
 
-/// What the numbers hold for.
+/// Metrics `context.*`: what the run was.
 struct RunContext {
   std::string path, robot, terrain, controller, profile, estimator, reference, tracker, foot_model,
       com_planner;
@@ -116,6 +124,7 @@ struct RunContext {
   double terrain_pitch_m = 0.0;
 };
 
+/// All entries of metrics.json.
 struct Metrics {
   bool fell = false;
   bool interrupted = false;
@@ -124,14 +133,14 @@ struct Metrics {
   Number fall_time_s, stand_down_delay_s;
   double turns_done = 0.0;
   Number yaw_rate_mean, yaw_rate_error;
-  ComMetrics com;
-  PathMetrics path;
-  AttitudeMetrics attitude;
-  AccelerationMetrics acceleration;
-  ContactMetrics contact;
-  EstimatorMetrics estimator;
-  TimingMetrics timing;
-  RunContext context;
+  ComMetrics com;                    ///< `com.*`
+  PathMetrics path;                  ///< `path.*`
+  AttitudeMetrics attitude;          ///< `attitude.*`
+  AccelerationMetrics acceleration;  ///< `acceleration.*`
+  ContactMetrics contact;            ///< `contact.*`
+  EstimatorMetrics estimator;        ///< `estimator.*`
+  TimingMetrics timing;              ///< `timing.*`
+  RunContext context;                ///< `context.*`
 
   /// Calls visit(value, "key", "unit", "meaning") for each entry of metrics.json in its order; a
   /// dot in the key nests. A value is a bool, double, Number, int64 or string.
@@ -142,20 +151,21 @@ struct Metrics {
 /// The motion's part of the metrics, of `record` sampled at `rate` (Hz). Lengths are horizontal.
 Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, double rate);
 
-/// Mean over consecutive whole windows of `length` samples of max - min; of all when shorter.
+/// Mean of max - min over consecutive whole windows of `length` samples; over all samples when
+/// there are fewer.
 Number peak_to_peak(std::span<const double> x, std::size_t length);
 
-/// m per turn: from the mean point of the first turn to that of the last one, divided by the turns
-/// between the middles of both. `yaw` is unwrapped. Absent for less than two turns.
+/// Drift (m per turn): from the mean point of the first turn to that of the last one, divided by
+/// the turns between their middles. `yaw` is unwrapped. Absent for less than two turns.
 Number drift_per_turn(std::span<const double> yaw, std::span<const Vec2> p_WG);
 
-/// m, from each point to the mean of the points from half a turn before it to half a turn after,
-/// where both are in the record. `yaw` is unwrapped.
+/// Distance (m) from each point to the mean of the points from half a turn before it to half a turn
+/// after, where both are in the record. `yaw` is unwrapped.
 std::vector<double> distances_to_turn_average(std::span<const double> yaw,
                                               std::span<const Vec2> p_WG);
 
-/// Mean velocity in heading axes less the commanded one: the bias that draws a circle of radius
-/// |b| / yaw rate. Inputs in world axes; m/s.
+/// Mean velocity (m/s, heading axes) minus the commanded one: a bias b leads to a circle of radius
+/// |b| / yaw rate. `yaw` in rad; `v_WG_W` in m/s, world axes. Absent without samples.
 std::optional<Vec2> body_bias(std::span<const double> yaw, std::span<const Vec2> v_WG_W,
                               const Vec2& commanded_v_H);
 

@@ -1,4 +1,4 @@
-// Plain statistics of samples: what the metrics are made of. Pure functions; "absent" is nullopt.
+// Statistics of samples, for the metrics. "Absent" is nullopt.
 #pragma once
 
 #include <optional>
@@ -9,21 +9,25 @@
 
 namespace pirouette {
 
+/// Mean; absent without samples.
 std::optional<double> mean(std::span<const double> x);
-/// Unbiased (divided by n - 1); absent for fewer than two samples.
+/// Unbiased variance (divided by n - 1); absent for fewer than two samples.
 std::optional<double> variance(std::span<const double> x);
-/// Share in [0, 1] of the samples lies below the result; linear between order statistics.
+/// Value below which the share in [0, 1] of the samples lies; linear between order statistics.
+/// Absent without samples.
 std::optional<double> quantile(std::span<const double> x, double share);
+/// Largest sample; absent without samples.
 std::optional<double> maximum(std::span<const double> x);
 
+/// Closed interval.
 struct Interval {
-  double low = 0.0;
-  double high = 0.0;
+  double low = 0.0;   ///< lower end
+  double high = 0.0;  ///< upper end
 };
 
-/// 95 % confidence interval of a probability of which `count` of `trials` came true; absent without
-/// trials. [Wilson27]: (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n), p = count/n,
-/// z = 1.96.
+/// 95 % confidence interval of the probability of an event that occurred in `count` of `trials`;
+/// absent without trials. [Wilson27]: (p + z^2/2n +- z sqrt(p (1 - p)/n + z^2/4n^2)) / (1 + z^2/n),
+/// p = count/n, z = 1.96.
 std::optional<Interval> wilson_interval(std::size_t count, std::size_t trials);
 
 /// Mean of points; zero for none.
@@ -31,8 +35,9 @@ Vec2 centroid(std::span<const Vec2> points);
 /// Distance of each point to `centre`.
 std::vector<double> distances(std::span<const Vec2> points, const Vec2& centre);
 
+/// Result of fit_circle(), in the unit of the points.
 struct CircleFit {
-  Vec2 centre = Vec2::Zero();
+  Vec2 centre = Vec2::Zero();    ///< of the fitted circle
   double radius = 0.0;           ///< of the fitted circle
   double mean_radius = 0.0;      ///< mean distance of the points to the centre
   double radius_variance = 0.0;  ///< unbiased, of that distance

@@ -1,4 +1,4 @@
-// Where the trunk, the legs' joints and the feet of a quadruped are in a compiled MuJoCo model.
+// Indices of a quadruped's trunk, joints and feet in a compiled MuJoCo model.
 #pragma once
 
 #include <mujoco/mujoco.h>
@@ -12,7 +12,7 @@
 
 namespace pirouette {
 
-/// One leg's place in an mjModel; arrays in the order abad, hip, knee.
+/// Indices of one leg in an mjModel; arrays in the order abad, hip, knee.
 struct LegMap {
   std::array<int, kJointsPerLeg> joint{};  ///< joint ids
   std::array<int, kJointsPerLeg> qpos{};   ///< addresses in mjData::qpos
@@ -23,17 +23,18 @@ struct LegMap {
   Vec3 tau_max = Vec3::Zero();  ///< N m
 };
 
+/// Indices of a quadruped in an mjModel.
 struct RobotMap {
-  int trunk_body = -1;
+  int trunk_body = -1;  ///< body with the free joint
   int trunk_qpos = -1;  ///< address of the free joint's position and quaternion
   int trunk_dof = -1;   ///< address of its 6 velocities
   PerLeg<LegMap> legs{};
 };
 
-/// Taken as the limit of a motor for which the robot file states none, N m.
+/// N m, limit of a motor for which the robot file gives none.
 inline constexpr double kNoTorqueLimit = 1e3;
 
-/// Finds the robot in `model` by name; `file` is what errors call it.
+/// Finds the robot in `model` by the names of its joints; errors call the model `file`.
 ///
 /// A leg's joints are the three hinges whose names begin with FR, FL, RR or RL (upper or lower
 /// case) below the body with the free joint; along the chain they are abad (about +x), hip and knee

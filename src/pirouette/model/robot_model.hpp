@@ -1,4 +1,4 @@
-// Rigid-body model of any MJCF quadruped: the controller's own copy, without a world around it.
+// The controller's rigid-body model of a quadruped from an MJCF file, without a world.
 #pragma once
 
 #include <memory>
@@ -14,28 +14,32 @@ namespace pirouette {
 
 inline constexpr int kDof = 18;  ///< 6 of the trunk, 12 joints
 
+/// Generalised velocity or force.
 using VecDof = Eigen::Matrix<double, kDof, 1>;
+/// Joint-space inertia.
 using MatDof = Eigen::Matrix<double, kDof, kDof>;
+/// Jacobian of a point or an angular velocity.
 using Jacobian = Eigen::Matrix<double, 3, kDof>;
 
-/// Generalised velocity nu = [v_WB_W; w_WB_B; joint velocities FR FL RR RL, each abad hip knee].
+/// Rigid-body model. Generalised velocity nu = [v_WB_W; w_WB_B; joint velocities FR FL RR RL, each
+/// abad hip knee].
 class RobotModel {
  public:
-  /// Reads `mjcf`; the errors name the file and what was expected (legs, joints, foot spheres).
+  /// Reads `mjcf`; the errors name the file and what is missing (legs, joints, foot spheres).
   static Result<RobotModel> load(const std::string& mjcf);
 
-  RobotModel(RobotModel&&) noexcept;
-  RobotModel& operator=(RobotModel&&) noexcept;
+  RobotModel(RobotModel&&) noexcept;             ///< moves
+  RobotModel& operator=(RobotModel&&) noexcept;  ///< moves
   ~RobotModel();
 
-  double mass() const;  ///< kg
-  const PerLeg<LegGeometry>& legs() const;
-  /// kg m^2, of the whole robot about its CoM, trunk axes, at joint angles `q`.
+  double mass() const;                      ///< kg
+  const PerLeg<LegGeometry>& legs() const;  ///< lengths and limits of each leg
+  /// Inertia (kg m^2) of the whole robot about its CoM, trunk axes, at joint angles `q` (rad).
   Mat3 inertia(const PerLeg<Vec3>& q);
-  /// m, CoM in trunk axes at joint angles `q`.
+  /// CoM (m) in trunk axes at joint angles `q` (rad).
   Vec3 com(const PerLeg<Vec3>& q);
 
-  /// Evaluates everything below at `state` (trunk pose and velocity, joints). No allocation.
+  /// Evaluates everything below at `state` (pose and velocity of the trunk, joints). No allocation.
   void update(const RobotState& state) noexcept;
 
   Vec3 p_WG() const;                              ///< m

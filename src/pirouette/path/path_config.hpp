@@ -7,18 +7,21 @@
 
 namespace pirouette {
 
+/// Values of path.reference.
 enum class PathReferenceMode { kVelocity, kIntegrated, kAnchored };
 template <>
 struct EnumNames<PathReferenceMode> {
   static constexpr std::array<std::string_view, 3> kNames = {"velocity", "integrated", "anchored"};
 };
 
+/// Values of path.tracker.
 enum class PathTracker { kNone, kLqr, kLqi };
 template <>
 struct EnumNames<PathTracker> {
   static constexpr std::array<std::string_view, 3> kNames = {"none", "lqr", "lqi"};
 };
 
+/// Parameters `path.*`.
 struct PathConfig {
   PathReferenceMode reference = PathReferenceMode::kAnchored;
   PathTracker tracker = PathTracker::kLqi;
@@ -72,6 +75,7 @@ struct PathConfig {
   }
 };
 
+/// Parameters `aid.*`.
 struct AidConfig {
   bool enabled = true;
   double time_constant = 4.0;
@@ -79,7 +83,7 @@ struct AidConfig {
   double timeout = 2.0;
   double max_offset = 0.5;
 
-  static constexpr std::size_t kHistory = 512;  ///< ticks, that a measurement may be old
+  static constexpr std::size_t kHistory = 512;  ///< ticks, largest age of a measurement
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -89,7 +93,7 @@ struct AidConfig {
     v(s.ramp_time, "ramp_time", "s", Range{0.0, 100.0},
       "After its first measurement the aid gains influence over this time.");
     v(s.timeout, "timeout", "s", Range{0.01, 100.0},
-      "An aid that was silent for longer is ramped in again.");
+      "After a longer gap the aid is ramped in again.");
     v(s.max_offset, "max_offset", "m", Range{0.0, 10.0},
       "A measurement further from the odometry than this beyond the offset is an outlier.");
   }

@@ -1,4 +1,4 @@
-// Where the CoM should be and where it should look, at each moment of a motion command.
+// Reference of the CoM: position, heading and velocity at each moment of a motion command.
 #pragma once
 
 #include <optional>
@@ -12,24 +12,25 @@
 
 namespace pirouette {
 
-/// The commanded twist, ramped and integrated exactly, or a path, followed at the ramped speed;
-/// either from an anchor: the command's point and heading, or else where the robot stands when
-/// walking begins. A changed point or heading anchors again. The reference waits for a robot that
-/// cannot keep up: it advances only while its yaw is less than max_yaw_lead ahead and, on a path,
-/// its arc length less than max_path_lead, so position and heading stay on the same path. A yaw
-/// error that is larger at the start (up to 180 degrees, the short way round) may shrink but not
-/// grow. At rest the reference stays where walking ended.
+/// Integrates the commanded twist, ramped, or follows a path at the ramped speed. Both begin at an
+/// anchor: the command's point and heading, else the robot's when walking begins. A changed point
+/// or heading anchors again. The reference waits for a robot that cannot keep up: it advances only
+/// while its yaw is less than max_yaw_lead ahead and, on a path, its arc length less than
+/// max_path_lead, so position and heading stay on the same path. A yaw error that is larger at the
+/// start (up to 180 degrees, the short way round) may shrink but not grow. At rest the reference
+/// stays where walking ended.
 class PathReference {
  public:
-  explicit PathReference(const PathConfig& config) : config_(config) {}
+  explicit PathReference(const PathConfig& config) : config_(config) {}  ///< not anchored, no path
 
   /// Follows `path` (absent: the twist) from the next update that walks. A path begins at the
   /// anchor; with a commanded point the robot joins it at the nearest point. The reference slows
   /// down towards the end of an open path and stays there.
   void follow(std::optional<Path> path);
 
-  bool follows_path() const noexcept { return path_.has_value(); }
+  bool follows_path() const noexcept { return path_.has_value(); }  ///< a path is set
 
+  /// Reference after one tick of `dt` (s).
   PathPoint update(const MotionCommand& command, const RobotState& state, double dt) noexcept;
 
   /// The next update anchors at the robot. The path stays.

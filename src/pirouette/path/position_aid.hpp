@@ -1,4 +1,4 @@
-// A position from outside, used as a slow offset of the set-point.
+// Position measured from outside, as a slow offset of the set-point.
 #pragma once
 
 #include <array>
@@ -10,18 +10,20 @@
 
 namespace pirouette {
 
-/// Low-pass of (aid - odometry): where the odometry's frame lies in the aid's. Fed into the filter
-/// itself, an aid would shake the velocity with its noise; as an offset of the set-point it only
-/// says, slowly, where to stand. Measurements are compared with the odometry at their own time.
-/// Drop-outs are bridged; a lost aid leaves the last offset.
+/// Low-pass of (aid - odometry): position of the odometry's frame in the aid's. Used in the
+/// odometry filter, an aid would add its noise to the velocity; as an offset of the set-point it
+/// moves the robot slowly. Measurements are compared with the odometry at their own time. Drop-outs
+/// are bridged; after the loss of the aid the last offset stays.
 class PositionAidOffset {
  public:
+  /// Offset zero.
   explicit PositionAidOffset(const AidConfig& config) : config_(config) { reset(); }
 
-  /// m, horizontal, to be added to the odometry's position.
+  /// Offset (m, horizontal) to be added to the odometry's position. `p_WB` (m) is the odometry at
+  /// `time` (s); `dt` in s.
   Vec2 update(const std::optional<PositionAid>& aid, const Vec2& p_WB, double time,
               double dt) noexcept;
-  void reset() noexcept;
+  void reset() noexcept;  ///< offset zero, no measurement yet
 
   /// See base/memory.hpp.
   template <class Self, class Visit>
@@ -42,7 +44,7 @@ class PositionAidOffset {
   std::array<Past, kHistory> history_;
   std::size_t recorded_ = 0;
   Vec2 offset_ = Vec2::Zero();  ///< m
-  double heard_for_ = 0.0;      ///< s, with the aid alive
+  double heard_for_ = 0.0;      ///< s, for which the aid has measured
   double silent_for_ = 0.0;     ///< s since its last measurement
   bool known_ = false;
 };

@@ -13,13 +13,14 @@ namespace pirouette {
 /// spinning robot is fixed to its body: a world-fixed law only shrinks the circle that it draws.
 class Tracker {
  public:
-  /// `control_rate` (Hz) is the rate at which update() will be called.
+  /// `control_rate` (Hz) is the rate of calls of update().
   Tracker(const PathConfig& config, double control_rate);
 
+  /// Velocity command after one tick of `dt` (s).
   TwistCommand update(const PathPoint& reference, const RobotState& state, double dt) noexcept;
-  void reset() noexcept;
+  void reset() noexcept;  ///< no corrections
 
-  /// m/s, velocity that the integrator commands, in heading axes.
+  /// Velocity (m/s) that the integrator commands, heading axes.
   Vec2 integral_H() const { return integral_H_; }
   /// Current LQR gain: correction (vx, vy, yaw rate) per error (x, y, yaw), reference heading axes.
   const Mat3& gain() const { return gain_; }

@@ -1,4 +1,4 @@
-// What goes wrong in the simulated robot, and when.
+// Parameters of the faults of the simulated robot.
 #pragma once
 
 #include <array>
@@ -13,30 +13,35 @@ struct EnumNames<Leg> {
   static constexpr std::array<std::string_view, kLegCount> kNames = kLegNames;
 };
 
+/// Values of plant.faults.joint.
 enum class FaultyJoint { kAbad, kHip, kKnee, kAll };
 template <>
 struct EnumNames<FaultyJoint> {
   static constexpr std::array<std::string_view, 4> kNames = {"abad", "hip", "knee", "all"};
 };
 
+/// Values of plant.faults.encoder.
 enum class EncoderFault { kNone, kStuck, kNan };
 template <>
 struct EnumNames<EncoderFault> {
   static constexpr std::array<std::string_view, 3> kNames = {"none", "stuck", "nan"};
 };
 
+/// Values of plant.faults.imu.
 enum class ImuFault { kNone, kStuck, kNan, kSpikes };
 template <>
 struct EnumNames<ImuFault> {
   static constexpr std::array<std::string_view, 4> kNames = {"none", "stuck", "nan", "spikes"};
 };
 
+/// Values of plant.faults.contact.
 enum class ContactFault { kNone, kStuckOn, kStuckOff };
 template <>
 struct EnumNames<ContactFault> {
   static constexpr std::array<std::string_view, 3> kNames = {"none", "stuck_on", "stuck_off"};
 };
 
+/// Parameters `plant.faults.*`.
 struct FaultConfig {
   double start = 10.0;
   double duration = 0.0;

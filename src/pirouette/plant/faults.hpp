@@ -12,28 +12,31 @@
 
 namespace pirouette {
 
-/// What the motors can give, as shares of what they should.
+/// Share of their nominal torque that the motors give.
 struct MotorHealth {
-  PerLeg<Vec3> torque = PerLeg<Vec3>::filled(Vec3::Ones());  ///< abad, hip, knee
-  double torque_limit = 1.0;
+  /// Share of each motor: abad, hip, knee.
+  PerLeg<Vec3> torque = PerLeg<Vec3>::filled(Vec3::Ones());
+  double torque_limit = 1.0;  ///< share of the robot file's torque limits
 };
 
-/// Draws from its own random streams, so that a fault shifts no other noise of the same seed.
+/// Faults of a run. Draws from its own random streams, so that a fault does not shift other noise
+/// of the same seed.
 class Faults {
  public:
-  /// Ticks last `period` (s).
+  /// `period` (s) of a control tick.
   Faults(const FaultConfig& config, std::uint64_t seed, double period);
 
-  /// Spoils `reading`, sample by sample; its time never falls.
+  /// Applies the faults to `reading`; call it once a tick, with times that never fall.
   void spoil(SensorReading& reading);
 
+  /// State of the motors at `time` (s).
   MotorHealth motors(double time) const;
 
-  /// Whether the joint command of this tick is lost on its way; call once a tick.
+  /// True when the joint command of the tick at `time` (s) is lost; call it once a tick.
   bool loses_command(double time);
 
-  /// m/s, world axes: the push in the tick that begins at `time`, if there is one. `yaw` (rad) is
-  /// the trunk's heading.
+  /// Change of velocity (m/s, world axes) by a push in the tick that begins at `time` (s); absent:
+  /// none. `yaw` (rad) is the trunk's heading.
   std::optional<Vec3> push(double time, double yaw) const;
 
  private:

@@ -13,10 +13,10 @@
 
 namespace pirouette {
 
-/// Of the physics engine in use, such as "4.0.0".
+/// Version of the physics engine in use, such as "4.0.0".
 std::string physics_version();
 
-/// What a Plant must know besides its world.
+/// What a Plant needs besides its WorldConfig.
 struct PlantSetup {
   std::string mjcf;           ///< path of the robot's file
   std::uint64_t seed = 1;     ///< of noise, biases and terrain
@@ -24,33 +24,34 @@ struct PlantSetup {
   double com_height = 0.0;    ///< m, of the standing robot above the ground
   Vec2 start = Vec2::Zero();  ///< m, of the trunk
   double start_yaw = 0.0;     ///< rad
-  bool shows_truth = false;   ///< sensor readings carry the true state too
+  bool shows_truth = false;   ///< sensor readings also carry the true state
 };
 
+/// Simulation of one robot in its world.
 class Plant {
  public:
-  /// Builds config.terrain around the robot and puts the robot on it, feet vertically below the
-  /// hips.
+  /// Builds config.terrain with the robot standing on it, feet vertically below the hips. The
+  /// errors name the robot's file, the terrain, or the leg that cannot reach the ground.
   static Result<Plant> create(const WorldConfig& config, const PlantSetup& setup);
 
-  Plant(Plant&&) noexcept;
-  Plant& operator=(Plant&&) noexcept;
+  Plant(Plant&&) noexcept;             ///< moves
+  Plant& operator=(Plant&&) noexcept;  ///< moves
   ~Plant();
 
-  /// The sensors at this moment, as the faults spoil them; draws noise, so call once a control
-  /// tick.
+  /// Sensor reading of this moment, with faults. Draws noise: call it once a control tick.
   SensorReading sense();
+  /// True state at this moment.
   const PlantTruth& truth() const;
 
-  /// Holds `command` for one period of the setup: physics steps with joint PD and
-  /// torque limits in each. What the faults have for this moment happens: a push at its beginning,
-  /// weak motors in it, or the command is lost and the last one stays in force.
+  /// Applies `command` for one period of the setup: physics steps with joint PD and torque limits
+  /// in each. Faults act in it: a push at its beginning, weak motors, or a lost command, in whose
+  /// place the last one is applied.
   void advance(const JointCommand& command);
 
-  /// Adds to the whole robot's velocity at once: a push. m/s, world axes.
+  /// Adds `delta_v_W` (m/s, world axes) to the velocity of the whole robot at once.
   void push(const Vec3& delta_v_W);
 
-  /// Sliding friction of feet and ground from now on, where the terrain has none of its own.
+  /// Sets the sliding friction of feet and ground, where the terrain has none of its own.
   void set_friction(double friction);
 
   double period() const;                  ///< s, of one advance()

@@ -13,6 +13,7 @@
 
 namespace pirouette {
 
+/// Deleter of MuJoCo's objects.
 struct MujocoDeleter {
   void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
   void operator()(mjModel* model) const { mj_deleteModel(model); }
@@ -22,22 +23,22 @@ using SpecPtr = std::unique_ptr<mjSpec, MujocoDeleter>;
 using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
 using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
 
+/// A compiled model and its indices.
 struct Scene {
   ModelPtr model;
   RobotMap map;
 };
 
-/// Puts the robot of `mjcf` on `terrain`. The world is pirouette's alone: geoms that the file fixes
-/// to the world (a floor of its own), its physics options and its actuators do not count. The feet
-/// take the configured friction and softness with a priority above every other geom's, so that
-/// MuJoCo uses exactly these values wherever a foot touches. Friction and damping of the joints are
-/// the file's, times the configured factors; the trunk's mass and CoM are off by what is
-/// configured, and a payload is on it.
+/// Puts the robot of `mjcf` on `terrain`. Geoms that the file fixes to the world (such as a floor),
+/// its physics options and its actuators are ignored. The feet have the configured friction and
+/// softness with a priority above every other geom's, so that MuJoCo uses exactly these values
+/// wherever a foot touches. Friction and damping of the joints are the file's, times the configured
+/// factors; mass and CoM of the trunk are changed as configured, and a payload is added to it.
 Result<Scene> build_scene(const WorldConfig& config, const Terrain& terrain,
                           const std::string& mjcf);
 
-/// Gives each foot the sliding friction of the terrain below it, `elsewhere` where that has none of
-/// its own. The foot's priority makes it that of its contacts in the next step.
+/// Gives each foot the sliding friction of the terrain below it, `elsewhere` where the terrain has
+/// none of its own. By the foot's priority its contacts have this friction in the next step.
 void set_foot_friction(const Terrain& terrain, double elsewhere, const RobotMap& map,
                        const mjData& data, mjModel& model);
 

@@ -1,10 +1,11 @@
-// Noise and biases of the simulated sensors.
+// Parameters of the simulated sensors: noise and biases.
 #pragma once
 
 #include "pirouette/base/fields.hpp"
 
 namespace pirouette {
 
+/// Parameters `plant.sensors.*`.
 struct SensorConfig {
   bool ideal = false;
   double encoder_noise = 5e-4;
@@ -51,7 +52,7 @@ struct SensorConfig {
     v(s.aid_dropout, "aid_dropout", "1", Range{0.0, 1.0},
       "Probability that one of its samples does not arrive.");
     v(s.aid_lost_after, "aid_lost_after", "s", Range{0.0, 1e6},
-      "No sample is measured after this time; 0: they go on.");
+      "No sample is measured after this time; 0: no limit.");
   }
 };
 

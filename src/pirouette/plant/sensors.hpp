@@ -1,4 +1,4 @@
-// Noise and biases on what the plant truly does.
+// Simulated sensors: the plant's true values with noise and biases.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,13 @@
 
 namespace pirouette {
 
-/// The contact flags, late and now and then wrong.
+/// Contact flags with delay and errors.
 class ContactFlags {
  public:
+  /// Draws errors of this `seed`.
   ContactFlags(const SensorConfig& config, std::uint64_t seed);
 
-  /// Flags at `time` (s, never falling) of feet that are pressed with `normal_force` (N).
+  /// Flags at `time` (s, never falling); `normal_force` (N) on each foot.
   PerLeg<bool> sample(double time, const PerLeg<double>& normal_force);
 
  private:
@@ -33,12 +34,14 @@ class ContactFlags {
   RandomStream random_;
 };
 
-/// Poses of the trunk measured from outside: at their own rate, late, with noise and gaps.
+/// Poses of the trunk measured from outside: with rate, delay, noise and drop-outs.
 class PositionAidSource {
  public:
+  /// Draws noise of this `seed`.
   PositionAidSource(const SensorConfig& config, std::uint64_t seed);
 
-  /// Measures if one is due at `time` (s, never falling), and hands out the newest that arrives.
+  /// Measures if a measurement is due at `time` (s, never falling), and returns the newest one that
+  /// arrives; absent: none.
   std::optional<PositionAid> sample(double time, const BaseTruth& truth);
 
  private:
@@ -55,13 +58,14 @@ class PositionAidSource {
   RandomStream random_;
 };
 
+/// All sensors of the robot.
 class Sensors {
  public:
   /// Draws the biases of this `seed`.
   Sensors(const SensorConfig& config, std::uint64_t seed);
 
-  /// One sample of every sensor; time never falls from call to call. `normal_force` (N) is what
-  /// presses on each foot.
+  /// One sample of every sensor; time never falls from call to call. `normal_force` (N) on each
+  /// foot.
   SensorReading sample(const PlantTruth& truth, const PerLeg<double>& normal_force);
 
  private:

@@ -1,4 +1,4 @@
-// A Plant as a World.
+// A Plant as a World of the control loop.
 #pragma once
 
 #include "pirouette/plant/plant.hpp"
@@ -6,10 +6,10 @@
 
 namespace pirouette {
 
-/// Never ends. `plant` must outlive it.
+/// World that never ends. `plant` must outlive it.
 class SimulatedWorld final : public World {
  public:
-  explicit SimulatedWorld(Plant& plant) : plant_(plant) {}
+  explicit SimulatedWorld(Plant& plant) : plant_(plant) {}  ///< at the present state of `plant`
 
   double period() const override { return plant_.period(); }
   std::optional<SensorReading> sense() override { return plant_.sense(); }

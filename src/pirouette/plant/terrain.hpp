@@ -1,4 +1,4 @@
-// The ground: what it may be, how high it is, and its shape in the simulated world.
+// Ground of the simulated world: kinds, height and collision shape.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,25 @@ struct mjSpec_;
 
 namespace pirouette {
 
+/// The plane z = 0.
 struct FlatGround {};
 
 /// A plane through the origin, uphill along +x.
 struct Slope {
-  double degrees = 0.0;
+  double degrees = 0.0;  ///< deg, angle from the horizontal
 };
 
 /// Straight stairs with the origin in the middle of a tread.
 struct Stairs {
   double rise = 0.0;     ///< m
   double run = 0.0;      ///< m
-  double degrees = 0.0;  ///< from +x to the direction of climbing, counter-clockwise
+  double degrees = 0.0;  ///< deg, from +x to the direction of climbing, counter-clockwise
 };
 
-/// A smooth random field without a direction, of zero mean, added along z to a slope.
+/// Smooth isotropic random heights of zero mean, added along z to a slope.
 struct RoughGround {
   double height = 0.0;         ///< m, from the lowest valley to the highest peak
-  double slope_degrees = 0.0;  ///< uphill along +x
+  double slope_degrees = 0.0;  ///< deg, uphill along +x
 };
 
 /// Boxes scattered over flat ground within 2 m of the origin, each of a random height from 0 to
@@ -41,52 +42,55 @@ struct Blocks {
 };
 
 /// Flat ground with a square of another sliding friction, 0 <= x <= side and |y| <= side / 2: one
-/// edge passes the origin, so that half of the footholds of a robot that spins there lie on it.
+/// edge passes through the origin, so that half of the footholds of a robot that spins there are on
+/// it.
 struct Patch {
-  double friction = 0.0;  ///< 1
-  double side = 0.0;      ///< m
+  double friction = 0.0;  ///< sliding friction
+  double side = 0.0;      ///< m, length
 };
 
 /// Flat ground into which the feet sink.
 struct SoftGround {
-  double time_constant = 0.0;  ///< s, of the contact, in the place of plant.contact_time_constant
+  double time_constant = 0.0;  ///< s, of the contact; replaces plant.contact_time_constant
 };
 
+/// Description of the ground.
 using TerrainSpec = std::variant<FlatGround, Slope, Stairs, RoughGround, Blocks, Patch, SoftGround>;
 
-/// Reads the texts that plant.terrain allows; an error names them.
+/// Reads a value of plant.terrain; an error lists the allowed ones.
 Result<TerrainSpec> parse_terrain(std::string_view text);
 
-/// The text that parse_terrain() reads back to the same numbers.
+/// The value of plant.terrain for `spec`; parse_terrain() gives the same numbers.
 std::string to_string(const TerrainSpec& spec);
 
+/// The ground of one world.
 class Terrain {
  public:
-  /// `seed` decides rough ground and blocks, and nothing else.
+  /// `seed` of rough ground and blocks; other ground does not depend on it.
   Terrain(const TerrainSpec& spec, std::uint64_t seed);
 
-  /// m, of the surface that the simulator collides with; beyond the edge, that of the nearest edge.
+  /// Height (m) of the colliding surface at `xy` (m); beyond the edge, that of the nearest edge.
   double height(const Vec2& xy) const;
 
-  /// m, height of the centre of a ball of `radius` lowered onto the ground at `xy` without touching
-  /// anything else.
+  /// Height (m) of the centre of a ball of `radius` (m) that is lowered at `xy` (m) until it
+  /// touches the ground.
   double ball_height(const Vec2& xy, double radius) const;
 
   /// Unit normal of the overall slope, world axes; of stairs, of the plane through the middles of
   /// the treads.
   Vec3 normal() const;
 
-  /// Sliding friction at `xy`; `elsewhere` where the terrain says nothing about it.
+  /// Sliding friction at `xy`; `elsewhere` where the terrain has none of its own.
   double friction(const Vec2& xy, double elsewhere) const;
 
-  /// s, of the feet's contact; `otherwise` where the terrain says nothing about it.
+  /// Time constant (s) of the feet's contact; `otherwise` if the terrain has none of its own.
   double contact_time_constant(double otherwise) const;
 
-  /// m, distance of the edge from the origin along x and y; infinite for planes.
+  /// Distance (m) of the edge from the origin along x and y; infinite for planes.
   double half_extent() const;
 
   /// Adds the ground's geoms to the world body of `spec`, with the `friction` of sliding (1),
-  /// torsion (m) and rolling (m). The friction of a patch is not in them: see friction().
+  /// torsion (m) and rolling (m). They do not include the friction of a patch: see friction().
   void add_to(mjSpec_& spec, const Vec3& friction) const;
 
  private:
@@ -97,7 +101,7 @@ class Terrain {
     double half_side;     ///< m
     double height = 0.0;  ///< m
 
-    /// m, horizontal distance of `xy` from the box; 0 above it.
+    /// Horizontal distance (m) of `xy` (m) from the box; 0 above it.
     double distance(const Vec2& xy) const;
   };
 

@@ -1,4 +1,4 @@
-// The simulated world: terrain, robot hardware, sensors and faults.
+// Parameters of the simulated world: terrain, robot hardware, sensors and faults.
 #pragma once
 
 #include <array>
@@ -10,6 +10,7 @@
 
 namespace pirouette {
 
+/// Parameters `plant.*`.
 struct WorldConfig {
   std::string terrain = "flat";
   double timestep = 0.001;
@@ -62,11 +63,11 @@ struct WorldConfig {
     v(s.trunk_com_offset, "trunk_com_offset", "m, m, m", Range{-0.2, 0.2},
       "The trunk's CoM from where the robot file has it, trunk axes.");
     v(s.payload, "payload", "kg", Range{0.0, 100.0},
-      "Mass on the trunk that the controller knows nothing of, a ball of 5 cm radius.");
+      "Mass on the trunk, unknown to the controller: a ball of 5 cm radius.");
     v(s.payload_position, "payload_position", "m, m, m", Range{-1.0, 1.0},
       "Its centre, trunk frame.");
     v(s.sensors, "sensors", "Sensor noise; per control sample.");
-    v(s.faults, "faults", "What goes wrong, and when.");
+    v(s.faults, "faults", "Faults and their times.");
   }
 };
 

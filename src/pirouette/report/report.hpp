@@ -1,4 +1,4 @@
-// What an experiment's trials say, as tables and text: for people, for spreadsheets, for plots.
+// Results of an experiment as tables and text: for people, spreadsheets and plots.
 #pragma once
 
 #include <map>
@@ -10,49 +10,51 @@
 
 namespace pirouette {
 
-/// Over the seeds that gave a value.
+/// Mean and deviation over the seeds that have a value.
 struct Spread {
-  double mean = 0.0;
+  double mean = 0.0;       ///< of the values
   double deviation = 0.0;  ///< standard deviation, unbiased; 0 for one seed
-  std::size_t count = 0;
+  std::size_t count = 0;   ///< number of values
 };
 
 /// One row of the experiment at one value of each axis, over all seeds.
 struct ReportEntry {
-  const ExperimentRow* row = nullptr;
-  const ExperimentTrial* first = nullptr;  ///< of its trials; carries levels and configuration
-  const PrintedResult* printed = nullptr;  ///< nullptr: nothing printed for it
-  std::size_t trials = 0;
-  std::size_t falls = 0;
-  std::map<std::string, Spread> metrics;  ///< of the trials without a fall, but is_of_falls()
-  std::string trace;                      ///< path within the sweep's folder; empty: none
+  const ExperimentRow* row = nullptr;      ///< of the entry
+  const ExperimentTrial* first = nullptr;  ///< of its trials, for levels and configuration
+  const PrintedResult* printed = nullptr;  ///< nullptr: none
+  std::size_t trials = 0;                  ///< number of trials
+  std::size_t falls = 0;                   ///< number of trials with a fall
+  std::map<std::string, Spread> metrics;   ///< of the trials without a fall, but is_of_falls()
+  std::string trace;                       ///< path within the sweep's folder; empty: none
 };
 
-/// An acceptance bound at one entry.
+/// Check of an acceptance bound at one entry.
 struct BoundCheck {
-  const ExperimentBound* bound = nullptr;
-  const ReportEntry* entry = nullptr;
-  std::optional<double> max;  ///< of the bound, with its share of the other row
-  std::string missed;         ///< why; empty: it holds
+  const ExperimentBound* bound = nullptr;  ///< what was checked
+  const ReportEntry* entry = nullptr;      ///< where it was checked
+  std::optional<double> max;               ///< of the bound, with its share of the other row
+  std::string missed;                      ///< reason when the bound is missed; empty: it holds
 };
 
-/// Points into `experiment`, which must outlive it.
+/// Report of an experiment. `experiment` and `result` must outlive it.
 struct Report {
+  /// Computes the entries.
   explicit Report(const Experiment& experiment, const SweepResult& result);
 
-  const Experiment* experiment;
-  const SweepResult* result;
-  std::vector<ReportEntry> entries;
+  const Experiment* experiment;      ///< argument of the constructor
+  const SweepResult* result;         ///< argument of the constructor
+  std::vector<ReportEntry> entries;  ///< by row and level
 
-  /// Tables beside the printed figures, and what follows from the numbers.
+  /// Markdown tables beside the printed results, with conclusions.
   std::string markdown() const;
-  /// All metrics of all entries, for plots.
+  /// JSON of all metrics of all entries, for plots.
   std::string json() const;
-  /// One line for each entry.
+  /// CSV, one line for each entry.
   std::string csv() const;
-  /// Each acceptance bound wherever it applies, in the order of the file. A fall misses it too.
+  /// Every acceptance bound at every entry where it applies, in the order of the file. A bound is
+  /// also missed by a fall.
   std::vector<BoundCheck> check_bounds() const;
-  /// A sentence for each that is missed.
+  /// One sentence for each missed bound.
   std::vector<std::string> missed_bounds() const;
 };
 

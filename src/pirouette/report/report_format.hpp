@@ -1,4 +1,4 @@
-// Words and numbers that the parts of a report share; for this folder only.
+// Texts and numbers shared by the parts of a report; for this folder only.
 #pragma once
 
 #include <span>
@@ -8,33 +8,37 @@
 
 namespace pirouette {
 
-inline constexpr const char* kFallTime = "fall_time_s";
+inline constexpr const char* kFallTime = "fall_time_s";  ///< key of the time of the fall
+/// Key of the time from the fall to the stand-down.
 inline constexpr const char* kStandDownDelay = "stand_down_delay_s";
 
-/// What only trials with a fall have.
+/// True for a metric that only trials with a fall have.
 inline bool is_of_falls(const std::string& metric) {
   return metric == kFallTime || metric == kStandDownDelay;
 }
 
-/// What a reader must know to compare a number; the same for every table.
+/// A parameter that a reader needs to compare numbers; one for every table.
 struct ReportContext {
-  const char* title;
-  const char* key;  ///< of the parameter
-  std::string (*text)(const Config&);
+  const char* title;                   ///< in the report
+  const char* key;                     ///< of the parameter
+  std::string (*text)(const Config&);  ///< its value in a Config
 };
+/// All of them, in the order of the report.
 std::span<const ReportContext> report_contexts();
 
-/// A cell of CSV, in quotes where it needs them.
+/// A CSV cell, quoted if needed.
 std::string csv_cell(const std::string& text);
-/// The shortest text that reads back as the same number.
+/// A CSV cell: the shortest text that reads back as the same number.
 std::string csv_cell(double value);
 
-/// Three significant digits.
+/// `value` with three significant digits.
 std::string short_number(double value);
 /// "1.23 ± 0.04"; without the deviation for a single seed.
 std::string with_spread(const Spread& spread);
 
+/// Spread of `metric`; nullptr: no trial has a value.
 const Spread* find_metric(const ReportEntry& entry, const std::string& metric);
+/// Printed value of `metric`; nullptr: none.
 const double* find_printed(const ReportEntry& entry, const std::string& metric);
 
 /// "plant.friction 0.4, com.planner psp": the axes' values, without the profile.

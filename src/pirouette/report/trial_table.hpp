@@ -1,4 +1,4 @@
-// The one table of an experiment: a line for each trial, with everything that was measured.
+// Table of all trials of an experiment: one line each, with every metric.
 #pragma once
 
 #include <string>
@@ -7,6 +7,7 @@
 
 namespace pirouette {
 
+/// Name of the file.
 inline constexpr const char* kTrialTable = "table.csv";
 
 /// CSV in the order of the experiment: trial (number from 0), key (trial_key()), row, a column for

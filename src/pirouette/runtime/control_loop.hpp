@@ -1,4 +1,4 @@
-// The loop between a world and a controller. There is no other one in this tree.
+// The loop between a world and a controller; the only one in this tree.
 #pragma once
 
 #include <cstdint>
@@ -10,34 +10,35 @@
 
 namespace pirouette {
 
-/// One tick: what was read, asked and answered. It refers to the loop's own values, which last
+/// One tick: sensor reading, motion command, joint command. Refers to values of the loop, valid
 /// until the next tick.
 struct TickView {
-  std::int64_t tick = 0;  ///< from 0
-  const SensorReading& sensors;
-  const MotionCommand& motion;
-  const JointCommand& command;
-  const PlantTruth* truth;  ///< at the moment of the reading; nullptr where nobody knows it
+  std::int64_t tick = 0;         ///< from 0
+  const SensorReading& sensors;  ///< reading of the tick
+  const MotionCommand& motion;   ///< motion command of the tick
+  const JointCommand& command;   ///< the controller's answer
+  const PlantTruth* truth;  ///< at the moment of the reading; nullptr if the world does not know it
   double tick_us = 0.0;     ///< wall-clock cost of the controller's tick
 };
 
-/// Tells the robot what to do.
+/// Source of the motion commands of a run.
 class MotionSource {
  public:
   virtual ~MotionSource() = default;
-  /// The command of tick `tick`; `truth` is the world's before it. Absent: the run is over.
+  /// Command of tick `tick`. `truth` is the world's before it, nullptr if the world does not know
+  /// it. Absent: the run ends.
   virtual std::optional<MotionCommand> next(std::int64_t tick, const PlantTruth* truth) = 0;
 };
 
-/// Watches a run, after each tick and before its command is sent.
+/// Observer of a run, called after each tick, before its joint command is sent.
 class Observer {
  public:
   virtual ~Observer() = default;
-  /// False ends the run.
+  /// Returns false to end the run.
   virtual bool watch(const TickView& view) = 0;
 };
 
-/// Keeps the loop to a clock.
+/// Clock of the loop.
 class Pacer {
  public:
   virtual ~Pacer() = default;
@@ -45,15 +46,16 @@ class Pacer {
   virtual void wait(std::int64_t tick) = 0;
 };
 
-/// The two halves of a tick, for programs that stop between them. World and controller must outlive
-/// it.
+/// A tick in two halves, tick() and send(), for programs that do something in between. World and
+/// controller must outlive it.
 class ControlLoop {
  public:
+  /// At tick 0. The controller must have been reset.
   ControlLoop(World& world, Controller& controller) : world_(world), controller_(controller) {}
 
-  /// Reads, and lets the controller answer. Absent: the world has ended.
+  /// Reads the sensors and ticks the controller. Absent: the world has ended.
   std::optional<TickView> tick(const MotionCommand& motion);
-  /// Sends the answer of the last tick().
+  /// Sends the joint command of the last tick().
   void send() { world_.send(*command_); }
 
   std::int64_t ticks() const { return ticks_; }  ///< done so far
@@ -74,9 +76,9 @@ enum class LoopEnd {
   kObserver,  ///< an observer asked for it
 };
 
-/// Runs `controller` in `world` until one of them, `motion` or an observer ends it. Each tick waits
-/// for `pacer`, where there is one; asks `motion`; reads; ticks the controller; shows the tick to
-/// `observers` in their order; sends.
+/// Runs `controller` in `world` until one of them, `motion` or an observer ends the run. Each tick
+/// waits for `pacer`, if there is one; gets the command from `motion`; reads the sensors; ticks the
+/// controller; shows the tick to the `observers` in their order; sends the joint command.
 LoopEnd run(World& world, Controller& controller, MotionSource& motion,
             std::span<Observer* const> observers, Pacer* pacer = nullptr);
 

@@ -1,4 +1,4 @@
-// What went into a controller and came out of it, tick by tick: recording, keeping, replaying.
+// Recording of a controller's inputs and outputs, tick by tick, and its replay.
 #pragma once
 
 #include <cstddef>
@@ -16,12 +16,12 @@
 
 namespace pirouette {
 
-inline constexpr const char* kRecordingFile = "recording.npy";
-inline constexpr const char* kRecordingStartFile = "recording.start";
+inline constexpr const char* kRecordingFile = "recording.npy";         ///< rows of RecordedTick
+inline constexpr const char* kRecordingStartFile = "recording.start";  ///< RecordingStart in bytes
 
-/// A row of recording.npy: the reading, the motion command, and the joint command and status that
-/// the controller gave. Units and frames as in SensorReading, MotionCommand and LegCommand. What is
-/// optional there has a flag `has_...` here and zeros where it is absent.
+/// A row of recording.npy: sensor reading, motion command, and the joint command and status of the
+/// controller. Units and frames as in SensorReading, MotionCommand and LegCommand. An optional
+/// value has a flag `has_...` and is zero where absent.
 struct RecordedTick {
   double time = 0.0;
   PerLeg<Vec3> joint_position = PerLeg<Vec3>::filled(Vec3::Zero());
@@ -54,10 +54,11 @@ struct RecordedTick {
   PerLeg<Vec3> command_torque = PerLeg<Vec3>::filled(Vec3::Zero());
   int status = 0;
 
+  /// The row of one tick.
   static RecordedTick of(const SensorReading& sensors, const MotionCommand& motion,
                          const JointCommand& command, ControllerStatus status);
-  SensorReading sensors() const;
-  MotionCommand motion() const;
+  SensorReading sensors() const;  ///< the recorded reading
+  MotionCommand motion() const;   ///< the recorded motion command
 
   /// Calls visit(name, unit, meaning, value) for each column.
   template <class Self, class Visit>
@@ -95,39 +96,44 @@ struct RecordedTick {
   }
 };
 
-/// From where a controller can live through the recorded ticks again.
+/// State from which a controller can replay the recorded ticks.
 struct RecordingStart {
-  std::int64_t first_tick = 0;      ///< of the run
-  BasePose pose;                    ///< that the controller was reset to before tick 0
+  std::int64_t first_tick = 0;      ///< number of the first recorded tick in its run
+  BasePose pose;                    ///< start pose of the run: argument of Controller::reset()
   std::vector<std::byte> snapshot;  ///< Controller::snapshot() before first_tick; empty at tick 0
 };
 
+/// A recorded part of a run.
 struct Recording {
-  RecordingStart start;
-  std::vector<RecordedTick> ticks;
+  RecordingStart start;             ///< state before the first tick
+  std::vector<RecordedTick> ticks;  ///< one for each control period
 };
 
-/// Writes recording.npy and recording.start into `folder`; the error when one cannot be written.
+/// Writes recording.npy and recording.start into `folder`. Returns the error when one cannot be
+/// written; absent: done.
 std::optional<Error> write_recording(const std::filesystem::path& folder,
                                      const Recording& recording);
 
-/// Reads both files of `folder`.
+/// Reads both files of `folder`. The errors name the file that is missing, damaged or of another
+/// version.
 Result<Recording> read_recording(const std::filesystem::path& folder);
 
-/// Keeps the last kKept to twice kKept seconds of a run in memory. Where the controller gives no
-/// snapshot, without which they could not be replayed, it keeps the run from its start for
-/// kKeptWhole.
+/// Keeps the last kKept to twice kKept seconds of a run in memory. If the controller gives no
+/// snapshots it keeps the run from its start instead, for kKeptWhole seconds: without a snapshot a
+/// replay can only begin there.
 class FlightRecorder final : public Observer {
  public:
   static constexpr double kKept = 10.0;        ///< s
   static constexpr double kKeptWhole = 120.0;  ///< s
 
-  /// `controller`, which ticks every `period` (s), has just been reset to `start`, and must outlive
-  /// the recorder.
+  /// `controller` must have just been reset to `start`, tick every `period` (s) and outlive the
+  /// recorder.
   FlightRecorder(const Controller& controller, const BasePose& start, double period);
 
+  /// Always true.
   bool watch(const TickView& view) override;
 
+  /// The ticks kept.
   Recording recording() const;
 
  private:
@@ -138,14 +144,17 @@ class FlightRecorder final : public Observer {
   Recording now_;
 };
 
-/// Writes a whole run to recording.npy and recording.start as it goes.
+/// Writes a whole run to recording.npy and recording.start, tick by tick.
 class RunRecorder final : public Observer {
  public:
-  /// As for the FlightRecorder.
+  /// `controller` must have just been reset to `start` and outlive the recorder. The error names
+  /// the file that cannot be written.
   static Result<RunRecorder> create(const std::filesystem::path& folder,
                                     const Controller& controller, const BasePose& start);
 
+  /// Always true.
   bool watch(const TickView& view) override;
+  /// Completes recording.npy. Returns the error when it could not be written; absent: done.
   std::optional<Error> finish() { return file_.finish(); }
 
  private:
@@ -156,7 +165,7 @@ class RunRecorder final : public Observer {
   const Controller& controller_;
 };
 
-/// A recording as a World: it reads what was read, whatever is sent.
+/// World that returns the recorded readings and ignores what is sent.
 class RecordedWorld final : public World {
  public:
   /// `recording` must outlive it.
@@ -171,24 +180,25 @@ class RecordedWorld final : public World {
   std::size_t next_ = 0;
 };
 
-/// Where a replay left the recording.
+/// First difference of a replay from its recording.
 struct ReplayDifference {
-  std::int64_t tick = 0;  ///< of the run
+  std::int64_t tick = 0;  ///< number of the tick in its run
   double time = 0.0;      ///< s, of the sensor reading
   std::string column;     ///< of recording.npy, with leg and element
-  double recorded = 0.0;
-  double replayed = 0.0;
+  double recorded = 0.0;  ///< value in the recording
+  double replayed = 0.0;  ///< value in the replay
 };
 
+/// Outcome of a replay.
 struct Replay {
-  std::int64_t ticks = 0;  ///< that were equal
-  std::optional<ReplayDifference> difference;
-  ControllerStatus status = ControllerStatus::kStanding;  ///< after the last of them
+  std::int64_t ticks = 0;                                 ///< number of equal ticks
+  std::optional<ReplayDifference> difference;             ///< absent: all ticks are equal
+  ControllerStatus status = ControllerStatus::kStanding;  ///< after the last equal tick
 };
 
-/// Gives `controller`, configured as the one recorded, the recorded readings and commands again,
-/// and compares what it sends, bit by bit, up to the first difference. An error when the recording
-/// begins within the run with a snapshot that this controller cannot take.
+/// Runs `controller`, configured as the recorded one, on the recorded readings and motion commands
+/// and compares its joint commands and status bit by bit, up to the first difference. An error when
+/// the recording starts with a snapshot that the controller cannot restore.
 Result<Replay> replay(const Recording& recording, Controller& controller);
 
 }  // namespace pirouette

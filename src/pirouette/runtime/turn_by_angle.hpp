@@ -8,8 +8,8 @@
 
 namespace pirouette {
 
-/// The motion commands that turn a robot by an angle, tick by tick, from how far it believes to
-/// have turned: it turns at the wanted rate, brakes, corrects what is left and stands. For a
+/// Motion commands that turn a robot by an angle, tick by tick, from the estimated angle turned so
+/// far: it turns at the commanded rate, brakes, corrects the remaining error and stands. For a
 /// MotionSource.
 class TurnByAngle {
  public:
@@ -23,7 +23,7 @@ class TurnByAngle {
   TurnByAngle(double angle, const MotionCommand& motion, double deceleration)
       : angle_(angle), motion_(motion), deceleration_(deceleration) {}
 
-  /// The command of this tick; `turned`: rad since the first one, as the robot believes; `dt`: s.
+  /// The command of this tick; `turned`: rad since the first one, as estimated; `dt`: s.
   MotionCommand update(double turned, double dt) noexcept {
     const double left = angle_ - turned;
     steady_for_ = std::abs(left) < kTolerance ? steady_for_ + dt : 0.0;

@@ -1,4 +1,4 @@
-// What a loop asks of the world that a robot lives in.
+// Interface between the control loop and a world.
 #pragma once
 
 #include <optional>
@@ -9,7 +9,7 @@
 
 namespace pirouette {
 
-/// A simulator, a robot, or a recording of either.
+/// A simulator, a robot, or a recording of one of them.
 class World {
  public:
   virtual ~World() = default;
@@ -17,13 +17,13 @@ class World {
   /// s, from one reading to the next; nominal on a robot.
   virtual double period() const = 0;
 
-  /// The next reading: a robot's world waits for it. Absent: the world has ended.
+  /// The next reading; on a robot the call waits for it. Absent: the world has ended.
   virtual std::optional<SensorReading> sense() = 0;
 
-  /// Takes the joint command that answers the last reading; a simulator advances by one period.
+  /// Applies the joint command that answers the last reading; a simulator advances by one period.
   virtual void send(const JointCommand& command) = 0;
 
-  /// What is true at the moment of the next reading; nullptr where nobody knows it.
+  /// True state at the moment of the next reading; nullptr if the world does not know it.
   virtual const PlantTruth* truth() const { return nullptr; }
 
  protected:

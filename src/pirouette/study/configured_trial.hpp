@@ -1,4 +1,4 @@
-// A trial as a Config describes it.
+// A trial described by a Config.
 #pragma once
 
 #include <string>
@@ -9,14 +9,14 @@
 
 namespace pirouette {
 
-/// What a Plant takes of `config` besides its world; `mjcf` is the path of the robot's file.
+/// The PlantSetup of `config`; `mjcf` is the path of the robot's file.
 PlantSetup plant_setup(const Config& config, const std::string& mjcf);
 
-/// The trial that `config` describes, its robot found and its path read.
+/// The trial of `config`, with its robot and path files found and the path read.
 Result<TrialSetup> set_up(const Config& config);
 
-/// What would keep run_trial() from starting: the robot's file, its leg names, the terrain, the
-/// path, a length of more than 10^6 s.
+/// Errors with which run_trial() would not start: the robot's file, its leg names, the terrain, the
+/// path, a length of more than 10^6 s. Empty: none.
 Errors check_trial(const Config& config);
 
 /// run_trial() of set_up(config). The same config gives the same rows bit for bit.

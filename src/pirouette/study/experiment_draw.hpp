@@ -1,4 +1,4 @@
-// What the trials of a random experiment draw.
+// Random draws of the trials of an experiment.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace pirouette {
 
-inline constexpr std::int64_t kMaxTrials = 1'000'000;
+inline constexpr std::int64_t kMaxTrials = 1'000'000;                ///< of an experiment
 inline constexpr std::int64_t kMaxDrawSeed = 9'000'000'000'000'000;  ///< as of run.seed
 
 /// A parameter that each trial draws anew: one of `values`, or, without any, uniform in [min, max],
@@ -15,11 +15,11 @@ inline constexpr std::int64_t kMaxDrawSeed = 9'000'000'000'000'000;  ///< as of 
 struct ExperimentDraw {
   std::string key;                    ///< dotted, such as plant.friction
   std::vector<std::string> values{};  ///< TOML literals, equally likely
-  double min = 0.0;
-  double max = 0.0;
-  bool either_sign = false;  ///< negative in half of the trials
-  std::string text{};        ///< "slope:{}": the value is this with the number in place of {}
-  int line = 0;              ///< of the experiment file
+  double min = 0.0;                   ///< smallest value
+  double max = 0.0;                   ///< largest value
+  bool either_sign = false;           ///< negative in half of the trials
+  std::string text{};  ///< "slope:{}": the value is this with the number in place of {}
+  int line = 0;        ///< of the experiment file
 
   /// "0.4 to 1", "flat, slope:10".
   std::string to_string() const;

@@ -1,4 +1,4 @@
-// What an experiment file says, before it is expanded into trials; for this folder only.
+// Content of an experiment file before it is expanded into trials; for this folder only.
 #pragma once
 
 #include <string>
@@ -25,7 +25,7 @@ struct ExperimentSettings {
   std::vector<std::vector<ExperimentSetting>> rows;
   std::vector<int> row_lines;
   std::vector<std::vector<ExperimentSetting>> axes;  ///< one for each value
-  std::vector<ExperimentSetting> trace;  ///< a key that is there twice: either value will do
+  std::vector<ExperimentSetting> trace;  ///< a key may occur twice: either value is right
 };
 
 /// Fills `experiment`, whose file and name are set, but for its trials.

@@ -1,4 +1,4 @@
-// The command line that repeats a trial.
+// Command line that repeats a trial.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace pirouette {
 /// `text` as one word of a POSIX shell. Control characters become "?".
 std::string shell_word(const std::string& text);
 
-/// "pirouette spin --set ...": gives exactly `config`, by what differs from the defaults of its
-/// robot, controller and profile.
+/// "pirouette spin --set ...": command line of exactly `config`, with the differences from the
+/// defaults of its robot, controller and profile.
 std::string repeat_command(const Config& config);
 
 }  // namespace pirouette

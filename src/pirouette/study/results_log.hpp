@@ -1,4 +1,4 @@
-// The finished trials of a folder: one line of JSON each, in one file for each process that writes.
+// Finished trials of a folder: one line of JSON each, in one file per writing process.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,12 @@
 
 namespace pirouette {
 
-/// Every count-th trial from the index-th on, both counted from 1; {1, 1}: all of them.
+/// Every count-th trial from the index-th on, counted from 1; {1, 1}: all trials.
 struct Shard {
-  unsigned index = 1;
-  unsigned count = 1;
+  unsigned index = 1;  ///< in [1, count]
+  unsigned count = 1;  ///< number of shards
 
+  /// True when the trial at `position` (from 0) is in this shard.
   bool holds(std::size_t position) const { return position % count == index - 1; }
   /// "2of4".
   std::string name() const;
@@ -26,24 +27,25 @@ struct Shard {
 /// the folder may lie on a network file system.
 std::string results_file(const std::optional<Shard>& shard);
 
+/// Results by trial_key().
 class ResultsLog {
  public:
   /// Reads all results of `folder` and opens the file of `shard` for appending; `fresh`, without a
-  /// shard, deletes them all. Fails while another process writes the same file, or, with `fresh`,
-  /// any of them.
+  /// shard, deletes them all. An error while another process writes the same file or, with
+  /// `fresh`, any of them.
   static Result<ResultsLog> open(const std::filesystem::path& folder,
                                  const std::optional<Shard>& shard, bool fresh);
   /// Reads all results of `folder` and changes nothing. append() is not allowed.
   static ResultsLog read(const std::filesystem::path& folder);
 
-  ResultsLog(ResultsLog&& other) noexcept;
+  ResultsLog(ResultsLog&& other) noexcept;  ///< moves
   ResultsLog& operator=(ResultsLog&&) = delete;
   ~ResultsLog();
 
-  /// nullptr: not finished.
+  /// Result of the trial `key`; nullptr: not finished.
   const MetricValues* find(const std::string& key) const;
-  /// In one write: a process that is killed leaves the whole line or a part of it at the end, which
-  /// open() cuts off.
+  /// Appends a result in one write: a process that is killed leaves the whole line or a part of it
+  /// at the end, which open() removes. Returns the error when it cannot be written; absent: done.
   std::optional<Error> append(const std::string& key, const MetricValues& values);
 
  private:

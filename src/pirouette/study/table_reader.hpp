@@ -1,4 +1,4 @@
-// Reads tables of an experiment file and collects what is wrong with them; for this folder only.
+// Reader of the tables of an experiment file that collects their errors; for this folder only.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace pirouette {
 
-/// What a list is: the value of one parameter, or values of which any will do.
+/// Meaning of a list: the value of one parameter, or values of which any will do.
 enum class Lists { kValues, kAlternatives };
 
 int line_of(const toml::node& node);
@@ -28,14 +28,15 @@ class TableReader {
   void allow_keys(const toml::table& table, const std::string& prefix,
                   const std::vector<std::string>& names) const;
 
-  /// Absent when it is not there or, which is reported, not a text.
+  /// The text `name`; absent when it is missing or not a text, which is an error.
   std::optional<std::string> text(const toml::table& table, const std::string& prefix,
                                   const char* name) const;
-  /// Reported when it is not there too; empty then.
+  /// The text `name`; missing, it is an error and the result is empty.
   std::string needed_text(const toml::table& table, const std::string& prefix,
                           const char* name) const;
   std::optional<double> number(const toml::node& node, const std::string& key) const;
-  /// A whole number in [min, max]; absent when it is not there or, which is reported, another.
+  /// The whole number `name` in [min, max]; absent when it is missing or another value, which is an
+  /// error.
   std::optional<std::int64_t> count(const toml::table& table, const char* name, std::int64_t min,
                                     std::int64_t max) const;
 

@@ -1,4 +1,4 @@
-// Stairs as the feet have met them: treads along the climb, and where their edges are.
+// Map of stairs from the footholds: treads along the climb and their edges.
 #pragma once
 
 #include <array>
@@ -10,41 +10,40 @@
 
 namespace pirouette {
 
-/// Where to put a foot instead, and how high the ground was there.
+/// Adapted foothold on a remembered tread.
 struct RememberedGround {
   Vec2 p_W = Vec2::Zero();  ///< m, moved along the climb away from the nearest edge
   double height = 0.0;      ///< m, of the tread
 };
 
-/// Footholds of the last strides in the odometry's frame, seen along the direction of the climb.
-/// The gradient of the plane through them is a first guess of it, several degrees off on steps;
-/// from there it turns, foothold by foothold, to where the heights in their order along it jump
-/// least. Sorted along it they fall into treads: neighbours that differ in height by more than
-/// min_step have an edge between them. Single odd heights (a foot on an edge) make no tread. Where
-/// the treads do not explain the heights, as on rough ground, the memory says nothing. It assumes
-/// straight stairs, and follows the odometry's drift by forgetting. docs/terrain.md#memory
+/// Footholds of the last strides in the odometry's frame, sorted along the direction of the climb.
+/// The first guess of that direction is the gradient of the plane through them, several degrees off
+/// on steps; with each foothold it turns to where the sorted heights jump least. Neighbours that
+/// differ in height by more than min_step have an edge between them; the footholds between two
+/// edges are on one tread. Single odd heights (a foot on an edge) make no tread. Where the treads
+/// do not explain the heights, as on rough ground, there is no result. Assumes straight stairs;
+/// old footholds are discarded, to follow the odometry's drift. docs/terrain.md#memory
 class FootholdMemory {
  public:
-  static constexpr std::size_t kCapacity = 160;
+  static constexpr std::size_t kCapacity = 160;  ///< footholds kept
 
-  explicit FootholdMemory(const TerrainConfig& config) : config_(config) {}
+  explicit FootholdMemory(const TerrainConfig& config) : config_(config) {}  ///< no footholds
 
-  /// One foothold, once per stance: contact point (m) of a foot on level ground, and the robot's
-  /// place (m).
+  /// Adds one foothold, once per stance: contact point `p_WC` (m) of a foot on level ground; `p_WG`
+  /// (m) is the CoM.
   void add(const Vec3& p_WC, const Vec2& p_WG) noexcept;
 
-  /// Plane through the footholds around the robot, of any kind of ground: where single feet stand
-  /// on single steps it is much steadier than the plane through four of them. Absent while there
-  /// are few.
+  /// Plane through the footholds around the robot, on any kind of ground; on steps it varies much
+  /// less than the plane through the last four. Absent while there are few footholds.
   const std::optional<TerrainPlane>& plane() const { return plane_; }
 
-  /// Absent: no opinion about `p_W` (m).
+  /// The remembered ground at `p_W` (m); absent where it is not known.
   std::optional<RememberedGround> at(const Vec2& p_W) const noexcept;
 
-  std::size_t tread_count() const { return valid_ ? tread_count_ : 0; }
-  void reset() noexcept;
+  std::size_t tread_count() const { return valid_ ? tread_count_ : 0; }  ///< number of treads known
+  void reset() noexcept;                                                 ///< no footholds
 
-  /// See base/memory.hpp. Footholds that have been added, of which count() are left.
+  /// See base/memory.hpp. Of the footholds only the count() valid ones.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
     auto& [config, footholds, added, plane, climb, sorted, treads, tread_count, valid] = self;

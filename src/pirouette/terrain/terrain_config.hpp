@@ -7,18 +7,21 @@
 
 namespace pirouette {
 
+/// Values of terrain.estimation.
 enum class TerrainEstimation { kOff, kPlane };
 template <>
 struct EnumNames<TerrainEstimation> {
   static constexpr std::array<std::string_view, 2> kNames = {"off", "plane"};
 };
 
+/// Values of terrain.contact_normal.
 enum class ContactNormal { kAuto, kPlane, kVertical };
 template <>
 struct EnumNames<ContactNormal> {
   static constexpr std::array<std::string_view, 3> kNames = {"auto", "plane", "vertical"};
 };
 
+/// Parameters `terrain.*`.
 struct TerrainConfig {
   TerrainEstimation estimation = TerrainEstimation::kPlane;
   double stale_time_constant = 0.3;

@@ -12,11 +12,11 @@
 
 namespace pirouette {
 
-/// One row: what the controller computed and what was true at that moment.
+/// One row: what the controller computed and the true state at that moment.
 struct TraceRow {
-  const TickTrace& tick;
-  const PlantTruth& truth;
-  double true_yaw = 0.0;  ///< rad, unwrapped
+  const TickTrace& tick;    ///< of the controller
+  const PlantTruth& truth;  ///< at the reading of that tick
+  double true_yaw = 0.0;    ///< rad, unwrapped
 
   /// Calls visit(name, unit, meaning, value) for each column: those of the controller, then the
   /// truth's, whose names begin with "true_".
@@ -24,7 +24,7 @@ struct TraceRow {
   static void columns(const TraceRow& row, Visit&& visit);
 };
 
-/// A file to append TraceRows to.
+/// A file for TraceRows. The error names the file that cannot be written.
 Result<NpyRowsFile> create_trace_file(const std::filesystem::path& path);
 
 /// Table of every column with its NumPy type, unit and meaning, in Markdown.

@@ -1,4 +1,4 @@
-// What one trial does.
+// Parameters of one trial.
 #pragma once
 
 #include <array>
@@ -9,6 +9,7 @@
 
 namespace pirouette {
 
+/// Parameters `run.*`.
 struct TrialConfig {
   double rate = 0.7;
   std::array<double, 2> velocity = {0.0, 0.0};

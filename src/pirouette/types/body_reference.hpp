@@ -1,4 +1,4 @@
-// What the body should do now: from path, tracker, terrain and CoM planner to MPC and WBC.
+// Reference of the body: from path, tracker, terrain and CoM planner to MPC and whole-body control.
 #pragma once
 
 #include "pirouette/base/math.hpp"
@@ -6,28 +6,29 @@
 
 namespace pirouette {
 
-/// A moment of the path reference (path/): where the CoM should be if nothing had gone wrong.
+/// Path reference of one tick: where the CoM is to be.
 struct PathPoint {
   Vec2 p_WG = Vec2::Zero();  ///< m
   double yaw = 0.0;          ///< rad, unwrapped
   Vec2 v_H = Vec2::Zero();   ///< m/s, feed-forward velocity in the reference's heading axes
   double yaw_rate = 0.0;     ///< rad/s
-  double arc_length = 0.0;   ///< m, way along the path since its start
+  double arc_length = 0.0;   ///< m, length of the path from its start
 };
 
-/// The tracker's velocity command, in the robot's own heading axes.
+/// The tracker's velocity command, in the robot's heading axes.
 struct TwistCommand {
   Vec2 v_H = Vec2::Zero();  ///< m/s
   double yaw_rate = 0.0;    ///< rad/s
 };
 
+/// Reference of CoM and trunk.
 struct BodyReference {
   Vec3 p_WG = Vec3::Zero();    ///< m, CoM
   Vec3 v_WG_W = Vec3::Zero();  ///< m/s, world axes
   Vec3 a_WG_W = Vec3::Zero();  ///< m/s^2, world axes
   RollPitchYaw rpy;            ///< rad, parallel to the terrain; yaw unwrapped
   Vec3 w_WB_W = Vec3::Zero();  ///< rad/s, world axes, matching roll and pitch on a slope (E16)
-  TwistCommand twist;          ///< carried over the MPC's horizon
+  TwistCommand twist;          ///< continues the reference over the MPC's horizon
 };
 
 }  // namespace pirouette

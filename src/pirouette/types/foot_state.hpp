@@ -1,4 +1,4 @@
-// A foot as the leg's kinematics see it, before anyone knows where the body is.
+// Kinematics of one foot relative to the trunk.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -6,6 +6,7 @@
 
 namespace pirouette {
 
+/// Foot relative to the trunk, from the joint angles and rates of its leg.
 struct FootState {
   Vec3 p_BF = Vec3::Zero();      ///< m, sphere centre in trunk axes
   Vec3 v_BF_B = Vec3::Zero();    ///< m/s, of the sphere centre relative to the trunk, trunk axes

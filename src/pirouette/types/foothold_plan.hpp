@@ -1,4 +1,4 @@
-// Where each foot is to land next.
+// Next foothold of each leg.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -6,12 +6,14 @@
 
 namespace pirouette {
 
+/// Where a foot is to land.
 struct Foothold {
   Vec3 p_WC = Vec3::Zero();  ///< m, contact point on the ground
   Vec3 p_WF = Vec3::Zero();  ///< m, sphere centre at touchdown
-  Vec3 n_W = Vec3::UnitZ();  ///< unit normal expected there
+  Vec3 n_W = Vec3::UnitZ();  ///< unit normal of the ground expected there
 };
 
+/// Next foothold of each leg.
 using FootholdPlan = PerLeg<Foothold>;
 
 }  // namespace pirouette

@@ -17,9 +17,9 @@ struct MotionCommand {
                               ///< stands when walking begins
   std::optional<double>
       heading;  ///< rad, world: heading of the reference at its start; absent: the robot's own
-  /// On a path (SpinController::follow) the length of v_H is the speed along it and the direction
-  /// of v_H that of the path in the body; yaw_rate has no say. The body turns with the path, or
-  /// else keeps its heading.
+  /// On a path (SpinController::follow) the length of v_H is the speed along the path and the
+  /// direction of v_H is that of the path in the body; yaw_rate is ignored. True: the body keeps
+  /// its heading; false: it turns with the path.
   bool hold_heading = false;
 
   /// See base/memory.hpp.

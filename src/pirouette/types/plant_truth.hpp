@@ -1,4 +1,4 @@
-// The simulator's truth, for metrics, pictures and studies. The controller never sees it.
+// True state of the simulation, for metrics, pictures and studies; the controller never sees it.
 #pragma once
 
 #include "pirouette/base/legs.hpp"
@@ -7,9 +7,10 @@
 
 namespace pirouette {
 
+/// True state at one moment.
 struct PlantTruth {
-  double time = 0.0;           ///< s
-  BaseTruth base;              ///< trunk frame
+  double time = 0.0;           ///< s, simulated
+  BaseTruth base;              ///< pose and velocity of the trunk frame
   Vec3 a_WB_W = Vec3::Zero();  ///< m/s^2, trunk origin, world axes, gravity taken out (0 at rest)
   Vec3 p_WG = Vec3::Zero();    ///< m, whole-body CoM
   Vec3 v_WG_W = Vec3::Zero();  ///< m/s
@@ -22,7 +23,7 @@ struct PlantTruth {
       v_slip_W{};  ///< m/s, velocity of the foot's material point at the contact; 0 in the air
   PerLeg<bool> contact{};                ///< the foot touches the ground
   double ground_height = 0.0;            ///< m, of the terrain below the CoM
-  Vec3 ground_normal_W = Vec3::UnitZ();  ///< of the terrain's overall slope
+  Vec3 ground_normal_W = Vec3::UnitZ();  ///< unit normal of the terrain's overall slope
 };
 
 }  // namespace pirouette

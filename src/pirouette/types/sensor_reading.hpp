@@ -1,4 +1,4 @@
-// What the robot measures at one control tick: the controller's only input besides the command.
+// Sensor reading of one control tick: the controller's only input besides the motion command.
 #pragma once
 
 #include <optional>
@@ -8,27 +8,28 @@
 
 namespace pirouette {
 
-/// Pose and velocity of the trunk frame B in the world W.
+/// Pose of the trunk frame B in the world W.
 struct BasePose {
-  Vec3 p_WB = Vec3::Zero();  ///< m
-  Mat3 R_WB = Mat3::Identity();
+  Vec3 p_WB = Vec3::Zero();      ///< m
+  Mat3 R_WB = Mat3::Identity();  ///< trunk axes in world axes
 };
 
-/// The simulator's truth about the trunk. Read only with estimation.source = "truth", for studies.
+/// True pose and velocity of the trunk. Read only with estimation.source = "truth", for studies.
 struct BaseTruth {
-  Vec3 p_WB = Vec3::Zero();  ///< m
-  Mat3 R_WB = Mat3::Identity();
-  Vec3 v_WB_W = Vec3::Zero();  ///< m/s, world axes
-  Vec3 w_WB_B = Vec3::Zero();  ///< rad/s, body axes
+  Vec3 p_WB = Vec3::Zero();      ///< m
+  Mat3 R_WB = Mat3::Identity();  ///< trunk axes in world axes
+  Vec3 v_WB_W = Vec3::Zero();    ///< m/s, world axes
+  Vec3 w_WB_B = Vec3::Zero();    ///< rad/s, body axes
 };
 
-/// A pose of the trunk measured from outside (motion capture) or by a camera on board.
+/// Pose of the trunk measured from outside (motion capture) or by a camera on board.
 struct PositionAid {
   Vec3 p_WB = Vec3::Zero();  ///< m
   double yaw = 0.0;          ///< rad, in [-pi, pi]
   double time = 0.0;         ///< s, of the measurement, by the clock of SensorReading::time
 };
 
+/// Sensor values of one control tick.
 struct SensorReading {
   double time = 0.0;              ///< s since the robot was switched on
   PerLeg<Vec3> joint_position{};  ///< rad: abad, hip, knee
@@ -37,7 +38,7 @@ struct SensorReading {
       Vec3::Zero();  ///< m/s^2, accelerometer in body axes: (0, 0, +g) at rest on the flat
   Vec3 w_WB_B = Vec3::Zero();                ///< rad/s, gyro in body axes
   std::optional<PerLeg<bool>> foot_contact;  ///< absent where the robot has no contact sensing
-  std::optional<PositionAid> aid;            ///< present in the ticks in which one arrives
+  std::optional<PositionAid> aid;            ///< present in ticks in which a measurement arrives
   std::optional<BaseTruth> truth;            ///< absent on a real robot
 
   /// See base/memory.hpp.

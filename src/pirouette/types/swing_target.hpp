@@ -1,4 +1,4 @@
-// Where a swing foot should be now.
+// Target of a swing foot.
 #pragma once
 
 #include "pirouette/base/math.hpp"

@@ -1,5 +1,4 @@
-// Everything one control tick computed. The log holds it, so that a stage can be replayed in a
-// test.
+// All values computed in one control tick; the log holds them, so that a test can replay a stage.
 #pragma once
 
 #include "pirouette/types/body_reference.hpp"
@@ -21,38 +20,38 @@
 
 namespace pirouette {
 
-/// What is kept of a tick when it is over. It is no bus: within a tick a step takes `last_...`
-/// values from the tick before and this tick's own values from the steps before it.
+/// Values kept of a finished tick. A step of a tick does not read it: it takes `last_...` values of
+/// the tick before and values of earlier steps of the same tick.
 struct TickTrace {
-  SensorReading sensors;
-  PerLeg<bool> encoder_stuck{};  ///< what the leg's encoders say is not believed
-  ControllerStatus status = ControllerStatus::kStanding;
-  SelfCheck self_check = SelfCheck::kRunning;
-  RobotState state;
-  PerLeg<FootState> feet{};
-  FootContacts contacts;
-  PerLeg<bool> flag_dropped{};  ///< the foot's contact flag is not believed
-  TerrainPlane plane;
-  GroundEstimate ground;
-  int remembered_treads = 0;
-  CreepEstimate creep;
-  Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk
+  SensorReading sensors;                                  ///< after SensorGuard
+  PerLeg<bool> encoder_stuck{};                           ///< the leg's joint angles are not used
+  ControllerStatus status = ControllerStatus::kStanding;  ///< after the tick
+  SelfCheck self_check = SelfCheck::kRunning;  ///< state of the self-check
+  RobotState state;                                       ///< estimated state of the robot
+  PerLeg<FootState> feet{};                               ///< kinematics of each leg
+  FootContacts contacts;                                  ///< contact of each foot
+  PerLeg<bool> flag_dropped{};  ///< the foot's contact flag is not used
+  TerrainPlane plane;                                     ///< estimated ground plane
+  GroundEstimate ground;                                  ///< kind of ground
+  int remembered_treads = 0;        ///< number of treads in the foothold memory
+  CreepEstimate creep;              ///< creep of the stance feet
+  Vec2 tilt_bias_H = Vec2::Zero();  ///< apparent slope that turns with the trunk, heading axes
   Vec2 aid_offset = Vec2::Zero();   ///< m, from the odometry's position to the aid's
-  GaitPhase gait;
-  PathPoint path;
-  TwistCommand twist;
-  Vec2 integral_H = Vec2::Zero();  ///< m/s, the tracker's body-frame integrator
-  FootholdPlan footholds;
-  ComPlan com_plan;
-  PerLeg<double> psp_weight{};
-  BodyReference reference;
-  PerLeg<SwingTarget> swing{};
-  ContactForces mpc;
-  ContactForces wbc;
-  JointCommand command;
+  GaitPhase gait;                   ///< phase of each leg
+  PathPoint path;                   ///< path reference
+  TwistCommand twist;               ///< the tracker's velocity command
+  Vec2 integral_H = Vec2::Zero();   ///< m/s, the tracker's body-frame integrator
+  FootholdPlan footholds;           ///< planned footholds
+  ComPlan com_plan;                 ///< the CoM planner's target
+  PerLeg<double> psp_weight{};      ///< vertex weights of the CoM planner
+  BodyReference reference;          ///< reference of MPC and whole-body control
+  PerLeg<SwingTarget> swing{};      ///< swing targets
+  ContactForces mpc;                ///< forces of the MPC
+  ContactForces wbc;                ///< forces of the whole-body control
+  JointCommand command;             ///< joint command sent
 
   /// Calls visit(name, unit, meaning, value) for each logged column; value is a double, int, bool,
-  /// Vec2, Vec3 or a PerLeg of one of them. The trace file, its documentation and the tests walk
+  /// Vec2, Vec3 or a PerLeg of one of them. The trace file, its documentation and the tests use
   /// this list.
   template <class Visit>
   static void columns(const TickTrace& t, Visit&& visit);
