@@ -1,9 +1,6 @@
 #include "sweep_runner.hpp"
 
-#include <unistd.h>
-
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <utility>
@@ -15,6 +12,7 @@
 #include "pirouette/report/report.hpp"
 #include "pirouette/report/survival_report.hpp"
 #include "pirouette/report/trial_table.hpp"
+#include "progress_line.hpp"
 
 namespace pirouette::app {
 namespace {
@@ -23,42 +21,20 @@ constexpr int kMaxJobs = 1024;
 constexpr unsigned kMaxShards = 100000;
 constexpr int kMinute = 60;  // s
 
-/// "fig6: 12 of 140 trials, 3 min 20 s left" on stderr: redrawn on a terminal, else a line every
-/// tenth of the trials.
-class SweepProgressLine {
- public:
-  explicit SweepProgressLine(std::string name)
-      : name_(std::move(name)), terminal_(::isatty(STDERR_FILENO) == 1) {}
-  ~SweepProgressLine() {
-    if (terminal_) std::fputs("\r\x1b[K", stderr);
-  }
-  SweepProgressLine(const SweepProgressLine&) = delete;
-  SweepProgressLine& operator=(const SweepProgressLine&) = delete;
+std::string duration(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  const std::string rest = std::to_string(whole % kMinute) + " s";
+  return whole < kMinute ? rest : std::to_string(whole / kMinute) + " min " + rest;
+}
 
-  void update(const SweepProgress& p) {
-    if (!terminal_ && p.done < next_ && p.done < p.total) return;
-    next_ = p.done + std::max<std::size_t>(1, p.total / kLines);
-    std::string line =
-        name_ + ": " + std::to_string(p.done) + " of " + std::to_string(p.total) + " trials";
-    if (p.done == p.resumed && p.resumed > 0) line += " were there";
-    if (p.seconds_left > 0.0) line += ", " + duration(p.seconds_left) + " left";
-    std::fprintf(stderr, terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
-    std::fflush(stderr);
-  }
-
- private:
-  static constexpr std::size_t kLines = 10;
-
-  static std::string duration(double seconds) {
-    const int whole = static_cast<int>(seconds + 0.5);
-    const std::string rest = std::to_string(whole % kMinute) + " s";
-    return whole < kMinute ? rest : std::to_string(whole / kMinute) + " min " + rest;
-  }
-
-  std::string name_;
-  bool terminal_;
-  std::size_t next_ = 0;
-};
+/// "fig6: 12 of 140 trials, 3 min 20 s left".
+std::string progress_text(const std::string& name, const SweepProgress& p) {
+  std::string text =
+      name + ": " + std::to_string(p.done) + " of " + std::to_string(p.total) + " trials";
+  if (p.done == p.resumed && p.resumed > 0) text += " were there";
+  if (p.seconds_left > 0.0) text += ", " + duration(p.seconds_left) + " left";
+  return text;
+}
 
 struct Tables {
   std::vector<std::pair<std::string, std::string>> files;  ///< name and text
@@ -171,8 +147,11 @@ Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std
   options.shard = shard();
   options.fresh = fresh;
   options.stop = [] { return interrupt_signal() != 0; };
-  SweepProgressLine line(experiment.name);
-  options.progress = [&line](const SweepProgress& progress) { line.update(progress); };
+  ProgressLine line;
+  options.progress = [&](const SweepProgress& p) {
+    const double done = static_cast<double>(p.done), total = static_cast<double>(p.total);
+    line.update(p.done < p.total ? done / total : 1.0, progress_text(experiment.name, p));
+  };
   return run_sweep(experiment, options);
 }
 
