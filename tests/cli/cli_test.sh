@@ -156,6 +156,9 @@ controller = "asc"
 TOML
 sed 's/asc/acs/' sandbox/experiment.toml > sandbox/bad_row.toml
 sed 's/turns = 0.02/tunrs = 1/' sandbox/experiment.toml > sandbox/bad_key.toml
+sed 's/label = "one"/label = "o\\u001bne"/' sandbox/experiment.toml > sandbox/bad_label.toml
+wrong 'bad_label.toml:6: rows.label: given "o\x1bne"; allowed: a text without control characters' \
+  sweep bad_label.toml
 wrong 'FILE' sweep
 wrong 'nowhere.toml: no such file' sweep nowhere.toml
 wrong 'bad_row.toml:5: controller: given "acs"' sweep bad_row.toml

@@ -339,6 +339,29 @@ TEST_F(Sweeps, SayOnceWhatAllRowsHaveInCommon) {
       << text;
 }
 
+TEST_F(Sweeps, EscapeLabelsInEveryTable) {
+  const std::string label = "a|b `c` *d* <script>e</script> \\\\ [f](g) _h_";
+  std::string text = tiny_but("label = \"asc\"", "label = \"" + label + "\"");
+  text.replace(text.find("ladder = [\"asc\""), 15, "ladder = [\"" + label + "\"");
+  text.replace(text.find("radius, mm"), 10, "r|s, <b>");
+  text.insert(0, "title = \"t <i>\"\nnote = \"*n* <i>\"\n");
+  const Experiment experiment = load(text);
+  const SweepResult result =
+      made_up(experiment, [](std::size_t row, auto) { return row == 0 ? Number() : Number(1.0); });
+  const Report report(experiment, result);
+  const std::string page = report.markdown();
+  const std::string shown = "a\\|b \\`c\\` \\*d\\* &lt;script>e&lt;/script> \\\\ [f\\](g) \\_h\\_";
+  EXPECT_NE(page.find("\n| " + shown + " |"), page.npos) << page;
+  EXPECT_NE(page.find("\n- " + shown + ", plant.friction 0.6: 2 of 2\n"), page.npos) << page;
+  EXPECT_NE(page.find(": " + shown + " fell -> ours"), page.npos) << page;
+  EXPECT_NE(page.find("| r\\|s, &lt;b> |"), page.npos) << page;
+  EXPECT_NE(page.find("# t &lt;i>\n"), page.npos) << page;
+  EXPECT_NE(page.find("\n*n* &lt;i>\n"), page.npos) << page;
+  EXPECT_EQ(page.find('<'), page.npos) << page;
+  EXPECT_NE(report.csv().find("\na|b `c` *d* <script>e</script> \\ [f](g) _h_,nominal,"), page.npos)
+      << report.csv();
+}
+
 TEST(TrialKey, StandsForTheConfiguration) {
   Config config = load_config().value();
   const std::string key = trial_key(config);

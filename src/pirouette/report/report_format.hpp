@@ -29,6 +29,12 @@ std::string csv_cell(const std::string& text);
 /// The shortest text that reads back as the same number.
 std::string csv_cell(double value);
 
+/// `text`, of one line, as Markdown that shows it as it is: no mark-up, no HTML, no end of a
+/// table's cell.
+std::string markdown(const std::string& text);
+/// `text` of Markdown without HTML.
+std::string without_html(const std::string& text);
+
 /// Three significant digits.
 std::string short_number(double value);
 /// "1.23 ± 0.04"; without the deviation for a single seed.
@@ -37,7 +43,7 @@ std::string with_spread(const Spread& spread);
 const Spread* find_metric(const ReportEntry& entry, const std::string& metric);
 const double* find_printed(const ReportEntry& entry, const std::string& metric);
 
-/// "plant.friction 0.4, com.planner psp": the axes' values, without the profile.
+/// "plant.friction 0.4, com.planner psp": the axes' values, without the profile; plain text.
 std::string axes_text(const Experiment& experiment, const ExperimentTrial& trial);
 /// The row's label and axes_text().
 std::string place_text(const Experiment& experiment, const ReportEntry& entry);

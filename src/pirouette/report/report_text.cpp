@@ -41,13 +41,13 @@ class MarkdownWriter {
       : report_(report), experiment_(*report.experiment) {}
 
   std::string write() {
-    out_ << "# " << experiment_.title << "\n\n";
+    out_ << "# " << markdown(experiment_.title) << "\n\n";
     out_ << "pirouette " << version() << " (" << commit() << "), MuJoCo " << physics_version()
          << ". Mean ± standard deviation over " << experiment_.seeds.size()
          << (experiment_.seeds.size() == 1 ? " seed" : " seeds");
-    if (!experiment_.source.empty()) out_ << "; printed: " << experiment_.source;
+    if (!experiment_.source.empty()) out_ << "; printed: " << markdown(experiment_.source);
     out_ << ".\n";
-    if (!experiment_.note.empty()) out_ << "\n" << experiment_.note << "\n";
+    if (!experiment_.note.empty()) out_ << "\n" << without_html(experiment_.note) << "\n";
     for (const std::string& profile : profiles()) write_profile(profile);
     write_bounds();
     return out_.str();
@@ -68,13 +68,17 @@ class MarkdownWriter {
     for (const ReportEntry& entry : report_.entries) {
       if (entry.first->config.profile == profile) entries_.push_back(&entry);
     }
-    out_ << "\n## Plant: " << profile << "\n\n";
+    out_ << "\n## Plant: " << markdown(profile) << "\n\n";
     write_table();
     write_falls();
     write_comparison();
     for (const ExperimentAxis& among : unnamed_values()) write_nearest(among);
     write_bias();
     write_ladder();
+  }
+
+  std::string place(const ReportEntry& entry) const {
+    return markdown(place_text(experiment_, entry));
   }
 
   bool is_printed(const std::string& metric) const {
@@ -112,7 +116,7 @@ class MarkdownWriter {
         continue;
       }
       common += (common.empty() ? "" : "; ") + without_unit(context.title) + " " +
-                context.text(entries_.front()->first->config) + unit_of(context.title);
+                markdown(context.text(entries_.front()->first->config)) + unit_of(context.title);
     }
     if (!common.empty()) out_ << "Everywhere: " << common << ".\n\n";
   }
@@ -122,7 +126,7 @@ class MarkdownWriter {
     std::string head = "| row |";
     std::string rule = "|---|";
     const auto add = [&](const std::string& title) {
-      head += " " + title + " |";
+      head += " " + markdown(title) + " |";
       rule += "---|";
     };
     for (const ReportContext* context : columns_) add(context->title);
@@ -137,12 +141,12 @@ class MarkdownWriter {
   }
 
   void write_line(const ReportEntry& entry) {
-    out_ << "| " << entry.row->label << " |";
+    out_ << "| " << markdown(entry.row->label) << " |";
     for (const ReportContext* context : columns_) {
-      out_ << " " << context->text(entry.first->config) << " |";
+      out_ << " " << markdown(context->text(entry.first->config)) << " |";
     }
     for (const std::size_t axis : extra_axes()) {
-      out_ << " " << experiment_.axes[axis].values[entry.first->levels[axis]] << " |";
+      out_ << " " << markdown(experiment_.axes[axis].values[entry.first->levels[axis]]) << " |";
     }
     out_ << " " << entry.falls << " of " << entry.trials << " |";
     for (const ExperimentColumn& column : experiment_.columns) {
@@ -159,8 +163,8 @@ class MarkdownWriter {
     std::string falls;
     for (const ReportEntry* entry : entries_) {
       if (entry->falls == 0) continue;
-      falls += "- " + place_text(experiment_, *entry) + ": " + std::to_string(entry->falls) +
-               " of " + std::to_string(entry->trials);
+      falls += "- " + place(*entry) + ": " + std::to_string(entry->falls) + " of " +
+               std::to_string(entry->trials);
       const Spread* time = find_metric(*entry, kFallTime);
       if (time != nullptr) falls += ", after " + with_spread(*time) + " s";
       falls += "\n";
@@ -180,7 +184,7 @@ class MarkdownWriter {
   }
 
   void write_difference(const ReportEntry& entry) {
-    out_ << "- " << place_text(experiment_, entry) << ": ";
+    out_ << "- " << place(entry) << ": ";
     if (entry.falls == entry.trials) {
       out_ << "every trial fell.\n";
       return;
@@ -190,8 +194,8 @@ class MarkdownWriter {
       const double* printed = find_printed(entry, column.metric);
       const Spread* ours = find_metric(entry, column.metric);
       if (printed == nullptr || ours == nullptr) continue;
-      out_ << separator << without_unit(column.title) << " " << short_number(ours->mean) << " vs "
-           << short_number(*printed) << unit_of(column.title) << " ("
+      out_ << separator << markdown(without_unit(column.title)) << " " << short_number(ours->mean)
+           << " vs " << short_number(*printed) << markdown(unit_of(column.title)) << " ("
            << difference(ours->mean, *printed) << ")";
       separator = "; ";
     }
@@ -248,8 +252,8 @@ class MarkdownWriter {
   }
 
   void write_nearest(const ExperimentAxis& among) {
-    out_ << "\nThe source does not say which " << among.key
-         << " its figures hold for: " << joined(among.values)
+    out_ << "\nThe source does not say which " << markdown(among.key)
+         << " its figures hold for: " << markdown(joined(among.values))
          << ". How far ours is from them, as a factor (geometric mean over what is printed):\n\n";
     std::set<std::string> papers;
     for (const ReportEntry* entry : entries_) {
@@ -267,12 +271,13 @@ class MarkdownWriter {
     Number least;
     for (const std::string& value : among.values) {
       const Number off = factor_off(among, value, paper);
-      list += (list.empty() ? "" : ", ") + value + " " + (off ? short_number(*off) : "fell");
+      list +=
+          (list.empty() ? "" : ", ") + markdown(value) + " " + (off ? short_number(*off) : "fell");
       if (!off || (least && *off >= *least)) continue;
       least = off;
-      nearest = value;
+      nearest = markdown(value);
     }
-    out_ << "- " << title << ": "
+    out_ << "- " << markdown(title) << ": "
          << (nearest.empty() ? "nothing to compare" : "nearest is " + nearest) << " (" << list
          << ").\n";
   }
@@ -316,7 +321,8 @@ class MarkdownWriter {
     if (experiment_.ladder.empty() || experiment_.columns.empty()) return;
     const std::string& metric = experiment_.columns.front().metric;
     const std::string title = column_title(experiment_, metric);
-    out_ << "\nThe ladder, " << title << " (each step should be smaller than the one before):\n\n";
+    out_ << "\nThe ladder, " << markdown(title)
+         << " (each step should be smaller than the one before):\n\n";
     std::vector<std::string> done;
     for (const ReportEntry* at : entries_) {
       const std::string axes = axes_text(experiment_, *at->first);
@@ -328,7 +334,7 @@ class MarkdownWriter {
 
   void write_rungs(const std::vector<std::size_t>& levels, const std::string& axes,
                    const std::string& metric) {
-    out_ << "- " << (axes.empty() ? "everywhere" : axes) << ": ";
+    out_ << "- " << (axes.empty() ? "everywhere" : markdown(axes)) << ": ";
     const Spread* before = nullptr;
     std::string broken;
     bool complete = true;
@@ -337,11 +343,11 @@ class MarkdownWriter {
         return e->row->label == label && e->first->levels == levels;
       });
       const Spread* rung = entry == entries_.end() ? nullptr : find_metric(**entry, metric);
-      out_ << (label == experiment_.ladder.front() ? "" : " -> ") << label << " "
+      out_ << (label == experiment_.ladder.front() ? "" : " -> ") << markdown(label) << " "
            << (rung != nullptr ? with_spread(*rung) : "fell");
       complete = complete && rung != nullptr;
       if (before != nullptr && rung != nullptr && rung->mean >= before->mean && broken.empty()) {
-        broken = label;
+        broken = markdown(label);
       }
       if (rung != nullptr) before = rung;
     }
@@ -359,10 +365,10 @@ class MarkdownWriter {
     const std::vector<BoundCheck> checks = report_.check_bounds();
     for (const BoundCheck& check : checks) {
       const Spread* spread = find_metric(*check.entry, check.bound->metric);
-      table << "| " << place_text(experiment_, *check.entry) << " | "
-            << column_title(experiment_, check.bound->metric) << " | " << allowed(check) << " | "
-            << (spread != nullptr ? with_spread(*spread) : "-") << " | "
-            << (check.missed.empty() ? "holds" : "**missed**: " + check.missed) << " |\n";
+      table << "| " << place(*check.entry) << " | "
+            << markdown(column_title(experiment_, check.bound->metric)) << " | " << allowed(check)
+            << " | " << (spread != nullptr ? with_spread(*spread) : "-") << " | "
+            << (check.missed.empty() ? "holds" : "**missed**: " + markdown(check.missed)) << " |\n";
       held += check.missed.empty() ? 1 : 0;
     }
     out_ << "\n## Acceptance: " << held << " of " << checks.size() << " bounds hold\n\n"
@@ -377,7 +383,7 @@ class MarkdownWriter {
     if (check.max) text += (text.empty() ? "" : ", ") + ("<= " + short_number(*check.max));
     if (bound.relative_to.empty()) return text;
     return text + " (" + (bound.max ? short_number(*bound.max) + " + " : "") +
-           short_number(bound.share) + " of " + bound.relative_to + ")";
+           short_number(bound.share) + " of " + markdown(bound.relative_to) + ")";
   }
 
   const Report& report_;

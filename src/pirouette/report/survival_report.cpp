@@ -60,11 +60,11 @@ class MarkdownWriter {
       : report_(report), experiment_(*report.experiment) {}
 
   std::string write() {
-    out_ << "# " << experiment_.title << "\n\n"
+    out_ << "# " << markdown(experiment_.title) << "\n\n"
          << "pirouette " << version() << " (" << commit() << "), MuJoCo " << physics_version()
          << ". " << experiment_.trials.size() << " trials, seed of the draws "
          << experiment_.random->seed << ".\n";
-    if (!experiment_.note.empty()) out_ << "\n" << experiment_.note << "\n";
+    if (!experiment_.note.empty()) out_ << "\n" << without_html(experiment_.note) << "\n";
     write_draws();
     write_survival();
     write_quantiles();
@@ -77,7 +77,8 @@ class MarkdownWriter {
     out_ << "\n## Drawn for each trial\n\n| parameter | rows | values |\n|---|---|---|\n";
     const auto write = [&](const std::vector<ExperimentDraw>& draws, const std::string& rows) {
       for (const ExperimentDraw& draw : draws) {
-        out_ << "| " << draw.key << " | " << rows << " | " << draw.to_string() << " |\n";
+        out_ << "| " << markdown(draw.key) << " | " << markdown(rows) << " | "
+             << markdown(draw.to_string()) << " |\n";
       }
     };
     write(experiment_.random->draws, "all");
@@ -92,9 +93,9 @@ class MarkdownWriter {
       const std::size_t stood = group.trials - group.falls;
       const auto interval = wilson_interval(stood, group.trials);
       if (!interval) continue;
-      out_ << "| " << group.label << " | " << group.trials << " | " << group.falls << " | "
-           << percent(static_cast<double>(stood) / static_cast<double>(group.trials)) << " | "
-           << percent(interval->low) << " to " << percent(interval->high) << " |\n";
+      out_ << "| " << markdown(group.label) << " | " << group.trials << " | " << group.falls
+           << " | " << percent(static_cast<double>(stood) / static_cast<double>(group.trials))
+           << " | " << percent(interval->low) << " to " << percent(interval->high) << " |\n";
     }
     const SurvivalGroup& all = report_.groups.front();
     if (all.falls > 0) {
@@ -118,7 +119,7 @@ class MarkdownWriter {
     out_ << "\n|---|---|---|---|---|---|---|\n";
     for (const ExperimentColumn& column : report_.columns) {
       for (const SurvivalGroup& group : report_.groups) {
-        out_ << "| " << column.title << " | " << group.label << " |";
+        out_ << "| " << markdown(column.title) << " | " << markdown(group.label) << " |";
         for (const double share : kShares) {
           const Number value = quantile(samples_of(group, column.metric), share);
           out_ << " " << (value ? short_number(*value) : "-") << " |";
@@ -131,15 +132,16 @@ class MarkdownWriter {
   void write_worst() {
     const ExperimentColumn& first = report_.columns.front();
     out_ << "\n## The worst trials, and how to repeat them\n\n"
-         << "Falls first, the earliest before the others, then by " << first.title << ".\n";
+         << "Falls first, the earliest before the others, then by " << markdown(first.title)
+         << ".\n";
     for (const std::size_t i : report_.worst) {
       const ExperimentTrial& trial = experiment_.trials[i];
       const MetricValues& values = report_.result->values[i];
       const Number fall_time = metric(values, kFallTime), size = metric(values, first.metric);
-      out_ << "\nTrial " << i << ", " << experiment_.rows[trial.row].label << ", seed "
+      out_ << "\nTrial " << i << ", " << markdown(experiment_.rows[trial.row].label) << ", seed "
            << trial.seed << ": "
            << (fell(values) ? "fell after " + short_number(fall_time.value_or(0.0)) + " s"
-                            : first.title + " " + (size ? short_number(*size) : "-"))
+                            : markdown(first.title) + " " + (size ? short_number(*size) : "-"))
            << "\n\n    " << repeat_command(trial.config) << "\n";
     }
   }
