@@ -1,5 +1,6 @@
 #include "sweep_runner.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <filesystem>
 #include <iostream>
@@ -19,7 +20,8 @@ namespace {
 
 constexpr int kMaxJobs = 1024;
 constexpr unsigned kMaxShards = 100000;
-constexpr int kMinute = 60;  // s
+constexpr int kMinute = 60;              // s
+constexpr std::size_t kShownLines = 20;  // of results that are not used
 
 std::string duration(double seconds) {
   const int whole = static_cast<int>(seconds + 0.5);
@@ -34,6 +36,16 @@ std::string progress_text(const std::string& name, const SweepProgress& p) {
   if (p.done == p.resumed && p.resumed > 0) text += " were there";
   if (p.seconds_left > 0.0) text += ", " + duration(p.seconds_left) + " left";
   return text;
+}
+
+void tell_unused_lines(const Errors& lines) {
+  const std::size_t shown = std::min(lines.size(), kShownLines);
+  for (std::size_t i = 0; i < shown; ++i) {
+    std::cerr << "warning: " << lines[i].to_string() << "; left out\n";
+  }
+  if (lines.size() > shown) {
+    std::cerr << "warning: " << lines.size() - shown << " more lines of results are left out\n";
+  }
 }
 
 struct Tables {
@@ -138,15 +150,22 @@ std::optional<Shard> SweepRunner::shard() const {
   return good ? std::optional(shard) : std::nullopt;
 }
 
-Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std::string& folder,
-                                         bool fresh) const {
-  if (merge_) return merge_sweep(experiment, folder);
+SweepOptions SweepRunner::options(const std::string& folder, bool fresh) const {
   SweepOptions options;
   options.jobs = static_cast<unsigned>(jobs_);
   options.folder = folder;
+  if (!own_folder_) options.beside = known_experiments();
   options.shard = shard();
   options.fresh = fresh;
+  options.unused_lines = tell_unused_lines;
   options.stop = [] { return interrupt_signal() != 0; };
+  return options;
+}
+
+Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std::string& folder,
+                                         bool fresh) const {
+  SweepOptions options = this->options(folder, fresh);
+  if (merge_) return merge_sweep(experiment, options);
   ProgressLine line;
   options.progress = [&](const SweepProgress& p) {
     const double done = static_cast<double>(p.done), total = static_cast<double>(p.total);
@@ -158,9 +177,10 @@ Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std
 int SweepRunner::survey(const Experiment& experiment, const std::string& folder) const {
   const Errors errors = check_sweep(experiment);
   if (!errors.empty()) return report(errors);
-  const SweepProgress progress = survey_sweep(experiment, folder);
-  std::cout << progress.done << " of " << progress.total << " trials are finished in " << folder
-            << "\n";
+  const Result<SweepProgress> progress = survey_sweep(experiment, options(folder, false));
+  if (!progress) return report(progress.errors());
+  std::cout << progress.value().done << " of " << progress.value().total
+            << " trials are finished in " << folder << "\n";
   return kDone;
 }
 

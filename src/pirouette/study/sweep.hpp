@@ -28,12 +28,17 @@ struct SweepProgress {
 };
 
 struct SweepOptions {
-  unsigned jobs = 0;  ///< threads; 0: one for each hardware thread
-  /// Where the results and kTracesFolder are; shared by experiments, which then share trials.
-  std::filesystem::path folder;
+  unsigned jobs = 0;             ///< threads; 0: one for each hardware thread
+  std::filesystem::path folder;  ///< where the results and kTracesFolder are
+  /// Names of other experiments whose results may be in `folder`: they then share trials. Results
+  /// of any other are refused.
+  std::vector<std::string> beside;
   std::optional<Shard> shard;                          ///< absent: all trials
   bool fresh = false;                                  ///< forget what is there; not for a shard
   std::function<void(const SweepProgress&)> progress;  ///< one call at a time; may be empty
+  /// Told once, before anything runs, which lines of results are not used, and why: damaged, edited
+  /// or old ones, and, without `beside`, those of no trial of the experiment. May be empty.
+  std::function<void(const Errors&)> unused_lines;
   std::function<bool()> stop;  ///< asked from all threads; true ends the sweep; may be empty
 };
 
@@ -47,16 +52,18 @@ struct SweepResult {
 /// not.
 Errors check_sweep(const Experiment& experiment);
 
-/// Runs what `folder` does not hold yet, appending each trial as it finishes. The result does not
-/// depend on `jobs`, nor on how often the sweep was interrupted, nor on how it was sharded.
+/// Runs what `folder` does not hold yet, appending each trial as it finishes. Refused, before
+/// anything runs, when `folder` holds results of an experiment other than this one and those of
+/// `beside`. The result does not depend on `jobs`, nor on how often the sweep was interrupted, nor
+/// on how it was sharded.
 Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& options);
 
-/// How much of the experiment `folder` holds.
-SweepProgress survey_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+/// How much of the experiment `options.folder` holds. Uses folder, beside and unused_lines.
+Result<SweepProgress> survey_sweep(const Experiment& experiment, const SweepOptions& options);
 
-/// The result from what `folder` holds, without running anything; the error when trials are
-/// missing says how many, and of which shards.
-Result<SweepResult> merge_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+/// The result from what `options.folder` holds, without running anything; the error when trials are
+/// missing says how many, and of which shards. Uses folder, beside and unused_lines.
+Result<SweepResult> merge_sweep(const Experiment& experiment, const SweepOptions& options);
 
 /// Path of the trace of a trial with keep_trace.
 std::filesystem::path trace_path(const std::filesystem::path& folder, const std::string& key);
