@@ -441,6 +441,7 @@ TEST_F(Sweeps, EscapeLabelsInEveryTable) {
   EXPECT_NE(page.find("# t &lt;i>\n"), page.npos) << page;
   EXPECT_NE(page.find("\n*n* &lt;i>\n"), page.npos) << page;
   EXPECT_EQ(page.find('<'), page.npos) << page;
+  EXPECT_EQ(page.find('{'), page.npos) << page;  // every text is filled
   EXPECT_NE(report.csv().find("\na|b `c` *d* <script>e</script> \\ [f](g) _h_,nominal,"), page.npos)
       << report.csv();
 }
