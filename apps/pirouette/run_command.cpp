@@ -12,7 +12,7 @@
 #include "pirouette/runtime/recording.hpp"
 #include "pirouette/study/configured_trial.hpp"
 #include "pirouette/trial/run_folder.hpp"
-#include "progress_bar.hpp"
+#include "progress_line.hpp"
 #include "realtime.hpp"
 #include "summary.hpp"
 
@@ -20,6 +20,8 @@ namespace pirouette::app {
 namespace {
 
 constexpr double kLeastAngleError = 1.0;  // deg, that is allowed of any angle
+constexpr double kPercent = 100.0;
+constexpr double kMillimetres = 1e3;  // in a metre
 
 std::string short_number(double value) {
   char text[32];
@@ -53,12 +55,27 @@ std::string shown_path(const std::filesystem::path& path) {
   return relative.starts_with("..") ? path.string() : relative;
 }
 
+double share_done(const TrialProgress& p) { return p.duration > 0.0 ? p.time / p.duration : 1.0; }
+
+/// `about_a_point`: the distance to the point means something.
+std::string progress_text(const TrialProgress& p, bool about_a_point) {
+  char text[128];
+  std::snprintf(text, sizeof text, "%3d %%  %5.1f s  %5.1f x real time  %6.2f turns",
+                static_cast<int>(kPercent * share_done(p)), p.time, p.real_time_factor, p.turns);
+  std::string line = text;
+  if (about_a_point) {
+    std::snprintf(text, sizeof text, "  %5.1f mm off", p.distance_to_point * kMillimetres);
+    line += text;
+  }
+  return line;
+}
+
 Result<TrialResult> simulate(const Config& config, TrialOptions options, bool show_progress) {
   const bool about_a_point = config.run.path.empty() && config.run.velocity == std::array{0.0, 0.0};
-  std::optional<ProgressBar> bar;
-  if (show_progress) bar.emplace(about_a_point);
+  std::optional<ProgressLine> line;
+  if (show_progress) line.emplace();
   options.progress = [&](const TrialProgress& progress) {
-    if (bar) bar->update(progress);
+    if (line) line->update(share_done(progress), progress_text(progress, about_a_point));
     return interrupt_signal() == 0;
   };
   return run_trial(config, options);

@@ -1,9 +1,7 @@
 #include "sweep_runner.hpp"
 
-#include <unistd.h>
-
+#include <algorithm>
 #include <charconv>
-#include <cstdio>
 #include <filesystem>
 #include <iostream>
 #include <utility>
@@ -15,50 +13,40 @@
 #include "pirouette/report/report.hpp"
 #include "pirouette/report/survival_report.hpp"
 #include "pirouette/report/trial_table.hpp"
+#include "progress_line.hpp"
 
 namespace pirouette::app {
 namespace {
 
 constexpr int kMaxJobs = 1024;
 constexpr unsigned kMaxShards = 100000;
-constexpr int kMinute = 60;  // s
+constexpr int kMinute = 60;              // s
+constexpr std::size_t kShownLines = 20;  // of results that are not used
 
-/// "fig6: 12 of 140 trials, 3 min 20 s left" on stderr: redrawn on a terminal, else a line every
-/// tenth of the trials.
-class SweepProgressLine {
- public:
-  explicit SweepProgressLine(std::string name)
-      : name_(std::move(name)), terminal_(::isatty(STDERR_FILENO) == 1) {}
-  ~SweepProgressLine() {
-    if (terminal_) std::fputs("\r\x1b[K", stderr);
+std::string duration(double seconds) {
+  const int whole = static_cast<int>(seconds + 0.5);
+  const std::string rest = std::to_string(whole % kMinute) + " s";
+  return whole < kMinute ? rest : std::to_string(whole / kMinute) + " min " + rest;
+}
+
+/// "fig6: 12 of 140 trials, 3 min 20 s left".
+std::string progress_text(const std::string& name, const SweepProgress& p) {
+  std::string text =
+      name + ": " + std::to_string(p.done) + " of " + std::to_string(p.total) + " trials";
+  if (p.done == p.resumed && p.resumed > 0) text += " were there";
+  if (p.seconds_left > 0.0) text += ", " + duration(p.seconds_left) + " left";
+  return text;
+}
+
+void tell_unused_lines(const Errors& lines) {
+  const std::size_t shown = std::min(lines.size(), kShownLines);
+  for (std::size_t i = 0; i < shown; ++i) {
+    std::cerr << "warning: " << lines[i].to_string() << "; left out\n";
   }
-  SweepProgressLine(const SweepProgressLine&) = delete;
-  SweepProgressLine& operator=(const SweepProgressLine&) = delete;
-
-  void update(const SweepProgress& p) {
-    if (!terminal_ && p.done < next_ && p.done < p.total) return;
-    next_ = p.done + std::max<std::size_t>(1, p.total / kLines);
-    std::string line =
-        name_ + ": " + std::to_string(p.done) + " of " + std::to_string(p.total) + " trials";
-    if (p.done == p.resumed && p.resumed > 0) line += " were there";
-    if (p.seconds_left > 0.0) line += ", " + duration(p.seconds_left) + " left";
-    std::fprintf(stderr, terminal_ ? "\r%s\x1b[K" : "%s\n", line.c_str());
-    std::fflush(stderr);
+  if (lines.size() > shown) {
+    std::cerr << "warning: " << lines.size() - shown << " more lines of results are left out\n";
   }
-
- private:
-  static constexpr std::size_t kLines = 10;
-
-  static std::string duration(double seconds) {
-    const int whole = static_cast<int>(seconds + 0.5);
-    const std::string rest = std::to_string(whole % kMinute) + " s";
-    return whole < kMinute ? rest : std::to_string(whole / kMinute) + " min " + rest;
-  }
-
-  std::string name_;
-  bool terminal_;
-  std::size_t next_ = 0;
-};
+}
 
 struct Tables {
   std::vector<std::pair<std::string, std::string>> files;  ///< name and text
@@ -162,26 +150,37 @@ std::optional<Shard> SweepRunner::shard() const {
   return good ? std::optional(shard) : std::nullopt;
 }
 
-Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std::string& folder,
-                                         bool fresh) const {
-  if (merge_) return merge_sweep(experiment, folder);
+SweepOptions SweepRunner::options(const std::string& folder, bool fresh) const {
   SweepOptions options;
   options.jobs = static_cast<unsigned>(jobs_);
   options.folder = folder;
+  if (!own_folder_) options.beside = known_experiments();
   options.shard = shard();
   options.fresh = fresh;
+  options.unused_lines = tell_unused_lines;
   options.stop = [] { return interrupt_signal() != 0; };
-  SweepProgressLine line(experiment.name);
-  options.progress = [&line](const SweepProgress& progress) { line.update(progress); };
+  return options;
+}
+
+Result<SweepResult> SweepRunner::results(const Experiment& experiment, const std::string& folder,
+                                         bool fresh) const {
+  SweepOptions options = this->options(folder, fresh);
+  if (merge_) return merge_sweep(experiment, options);
+  ProgressLine line;
+  options.progress = [&](const SweepProgress& p) {
+    const double done = static_cast<double>(p.done), total = static_cast<double>(p.total);
+    line.update(p.done < p.total ? done / total : 1.0, progress_text(experiment.name, p));
+  };
   return run_sweep(experiment, options);
 }
 
 int SweepRunner::survey(const Experiment& experiment, const std::string& folder) const {
   const Errors errors = check_sweep(experiment);
   if (!errors.empty()) return report(errors);
-  const SweepProgress progress = survey_sweep(experiment, folder);
-  std::cout << progress.done << " of " << progress.total << " trials are finished in " << folder
-            << "\n";
+  const Result<SweepProgress> progress = survey_sweep(experiment, options(folder, false));
+  if (!progress) return report(progress.errors());
+  std::cout << progress.value().done << " of " << progress.value().total
+            << " trials are finished in " << folder << "\n";
   return kDone;
 }
 

@@ -38,6 +38,7 @@ class SweepRunner {
  private:
   /// --shard; absent when not given or wrong.
   std::optional<Shard> shard() const;
+  SweepOptions options(const std::string& folder, bool fresh) const;
   Result<SweepResult> results(const Experiment& experiment, const std::string& folder,
                               bool fresh) const;
   /// Prints how much of the experiment `folder` holds.

@@ -226,6 +226,14 @@ FIGURES = {
 }
 
 
+def without_formulas(report: dict) -> dict:
+    """The report with labels of which no dollar sign begins a formula."""
+    for entry in report["entries"]:
+        for name in ("label", "paper"):
+            entry[name] = entry[name].replace("$", r"\$")
+    return report
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("folder", type=Path, help="folder of `pirouette reproduce`")
@@ -238,7 +246,7 @@ def main() -> int:
         )
         return 2
     for name in found:
-        report = json.loads((folder / f"{name}.json").read_text())
+        report = without_formulas(json.loads((folder / f"{name}.json").read_text()))
         figure = FIGURES[name](report, folder)
         for axes in figure.axes:
             axes.grid(alpha=0.25, lw=0.5)

@@ -156,6 +156,9 @@ controller = "asc"
 TOML
 sed 's/asc/acs/' sandbox/experiment.toml > sandbox/bad_row.toml
 sed 's/turns = 0.02/tunrs = 1/' sandbox/experiment.toml > sandbox/bad_key.toml
+sed 's/label = "one"/label = "o\\u001bne"/' sandbox/experiment.toml > sandbox/bad_label.toml
+wrong 'bad_label.toml:6: rows.label: given "o\x1bne"; allowed: a text without control characters' \
+  sweep bad_label.toml
 wrong 'FILE' sweep
 wrong 'nowhere.toml: no such file' sweep nowhere.toml
 wrong 'bad_row.toml:5: controller: given "acs"' sweep bad_row.toml
@@ -318,6 +321,26 @@ cmp -s swept/table.csv first.csv && cmp -s stdout first.md || fail 'another tabl
 
 [ "$("$program" sweep sandbox/experiment.toml --seeds 3 --out swept --dry-run)" = \
   '2 of 3 trials are finished in swept' ] || fail 'a dry run'
+
+# A broken, an old and a foreign line are told, and their trials run again.
+sed -i -e '1s/"fell":0.0/"fell":1.0/' -e '2s/,"check".*/}/' swept/results.jsonl
+sed -n '1s/"row":"one"/"row":"two"/p' swept/results.jsonl >> swept/results.jsonl
+"$program" sweep sandbox/experiment.toml --seeds 2 --out swept > stdout 2> stderr ||
+  fail 'a sweep of a log with broken lines'
+for told in '1: is damaged or edited' '2: has no checksum' '3: is damaged or edited'; do
+  grep -q "^warning: swept/results.jsonl:$told.*; left out$" stderr || fail "does not tell $told"
+done
+grep -q '0 of 2 trials' stderr || fail 'believes broken lines'
+cmp -s swept/table.csv first.csv && cmp -s stdout first.md || fail 'another table after broken lines'
+
+# A folder is of one experiment.
+sed 's/turns = 0.02/turns = 0.03/' sandbox/experiment.toml > sandbox/other.toml
+wrong '../swept: holds results of the experiment "experiment"; allowed for "other": a folder of its own, by --out' \
+  sweep other.toml --out ../swept
+wrong 'holds results of the experiment "experiment"' sweep other.toml --out ../swept --fresh
+wrong 'holds results of the experiment "experiment"' sweep other.toml --out ../swept --dry-run
+wrong 'holds results of the experiment "experiment"' montecarlo random.toml --out ../swept
+wrong 'holds results of the experiment "experiment"' reproduce fig6 --turns 0.02 --out ../swept
 
 # The same in two parts.
 "$program" sweep sandbox/experiment.toml --seeds 2 --out parts --shard 2/2 > stdout 2> stderr ||

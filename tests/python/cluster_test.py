@@ -1,5 +1,6 @@
 """A sweep on a Ray cluster leaves the files of a sweep on one machine, byte for byte."""
 
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -7,7 +8,18 @@ from pathlib import Path
 import pytest
 from conftest import PROGRAM, QUICK_TRIALS
 
-from pirouette.cluster.driver import NO_RAY, Study, import_ray, known_results, run
+from pirouette.cluster.driver import (
+    NO_RAY,
+    Study,
+    import_ray,
+    keep,
+    known_results,
+    merge,
+    open_results,
+    run,
+    unfinished,
+)
+from pirouette.cluster.shard import Work, run_shard
 from pirouette.errors import Error
 
 EXPERIMENT = f"""
@@ -78,12 +90,42 @@ def test_what_is_finished_does_not_run_again(ray, program, experiment, tmp_path,
     study = Study(experiment / "tiny.toml", tmp_path / "out")
     log = known_results(experiment / "tiny-alone").splitlines(keepends=True)
     study.out.mkdir()
-    (study.out / "results-1of2.jsonl").write_text("".join(log[:3]) + log[3][:20])
+    (study.out / "results-1of2.jsonl").write_bytes(b"".join(log[:3]) + log[3][:20])
     assert run(study, "local", None) == 0
     assert files(study.out) == files(experiment / "tiny-alone")
     assert "tasks" in capfd.readouterr().err
     assert run(study, "local", None) == 0  # nothing is left: Ray is not even started
     assert "tasks" not in capfd.readouterr().err
+
+
+def test_damaged_results_run_again(program, experiment, tmp_path, capfd):
+    study = Study(experiment / "tiny.toml", tmp_path / "out")
+    log = known_results(experiment / "tiny-alone").splitlines(keepends=True)
+    shutil.copytree(experiment / "tiny-alone" / "traces", study.out / "traces")
+    damaged = [log[0].replace(b'"fell":0.0', b'"fell":1.0'), b"\xff\xfe\n", *log[2:], log[1][:9]]
+    (study.out / "results-ray.jsonl").write_bytes(b"".join(damaged))
+    assert unfinished(str(PROGRAM), study) == 2
+    work = Work(
+        program=str(PROGRAM),
+        version=subprocess.check_output([PROGRAM, "--version"], text=True).strip(),
+        verb="sweep",
+        name="tiny.toml",
+        text=EXPERIMENT,
+        options=(),
+        folder=str(tmp_path),
+        environment={},
+        known=known_results(study.out),
+    )
+    finished = run_shard(work, 1, 1)
+    assert finished.error == ""
+    assert sorted(finished.results.splitlines(keepends=True)) == sorted(log[:2])
+    with open_results(study.out) as results:
+        keep(finished, study.out, results)
+    assert merge(str(PROGRAM), study) == 0
+    assert files(study.out) == files(experiment / "tiny-alone")
+    said = capfd.readouterr().err
+    assert "results-ray.jsonl:1: is damaged or edited: its checksum does not fit; left out" in said
+    assert "results-ray.jsonl:2: is no whole line of JSON; left out" in said
 
 
 def test_a_node_with_another_program_is_refused(ray, program, experiment, tmp_path, monkeypatch):

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <regex>
 #include <sstream>
 
 #include "pirouette/config/toml.hpp"
@@ -71,6 +72,7 @@ TEST_F(SurvivalReports, CountFallsByRowWithWilsonIntervals) {
   EXPECT_NE(text.find("| flat | 20 | 0 | 100.0 % | 83.9 % to 100.0 % |"), text.npos) << text;
   EXPECT_NE(text.find("| slope | 20 | 2 | 90.0 % |"), text.npos) << text;
   EXPECT_NE(text.find("Allowed are 2 falls: holds."), text.npos);
+  EXPECT_FALSE(std::regex_search(text, std::regex("\\{[a-z_]+\\}"))) << text;  // all is filled
 }
 
 TEST_F(SurvivalReports, LeaveFallsOutOfTheQuantiles) {

@@ -83,6 +83,36 @@ class ExperimentFiles : public test::TempFolderTest {
   }
 };
 
+TEST_F(ExperimentFiles, NameTheLineWithAControlCharacter) {
+  const std::string allowed = "; allowed: a text without control characters, on one line";
+  EXPECT_EQ(errors_of("label = \"baseline\"", "label = \"base\\nline\""),
+            "8: rows.label: given \"base\\x0aline\"" + allowed);
+  EXPECT_EQ(errors_of("radius, mm", "\\u001b[31mradius, mm"),
+            "27: columns.title: given \"\\x1b[31mradius, mm\"" + allowed);
+  EXPECT_EQ(errors_of("A small", "A\\u009bsmall"),
+            "1: title: given \"A\\xc2\\x9bsmall experiment\"" + allowed);
+  EXPECT_EQ(errors_of("\"realistic\"]", "\"real\\u007f\"]"),
+            "21: axes.values: given \"real\\x7f\"" + allowed);
+  EXPECT_EQ(errors_of("seeds = [3, 5]", "\"se\\reds\" = [3, 5]"),
+            "2: se\\x0deds: a key; allowed: one without control characters");
+}
+
+TEST_F(ExperimentFiles, MayHaveANoteOfSeveralLines) {
+  EXPECT_TRUE(load(std::string("note = \"\"\"one\n\ttwo ± π \U0001F600\"\"\"\n") + kGood));
+  EXPECT_FALSE(load(std::string("note = \"one\\u0007\"\n") + kGood));
+}
+
+TEST_F(ExperimentFiles, AreRefusedByANameThatBreaksALine) {
+  for (const std::string name : {"a\nb", "a\x1b[31m", "a\xff"}) {
+    const fs::path path = folder_ / (name + ".toml");
+    std::ofstream(path) << kGood;
+    const Result<Experiment> experiment = load_experiment(path);
+    ASSERT_FALSE(experiment);
+    EXPECT_NE(experiment.errors().front().to_string().find("allowed: a file name in UTF-8"),
+              std::string::npos);
+  }
+}
+
 TEST_F(ExperimentFiles, ExpandRowsThenAxesThenSeeds) {
   const Result<Experiment> loaded = load(kGood);
   ASSERT_TRUE(loaded) << loaded.errors().front().to_string();

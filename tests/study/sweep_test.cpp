@@ -164,7 +164,7 @@ TEST_F(Sweeps, GiveTheSameTableFromShardsThatRunAtTheSameTime) {
       });
     }
   }
-  const Result<SweepResult> merged = merge_sweep(experiment, folder_ / "sharded");
+  const Result<SweepResult> merged = merge_sweep(experiment, options("sharded", 1));
   ASSERT_TRUE(merged) << merged.errors().front().to_string();
   EXPECT_EQ(whole, all_text(experiment, merged.value()));
   for (const auto& entry : fs::directory_iterator(folder_ / "whole" / kTracesFolder)) {
@@ -196,9 +196,9 @@ TEST_F(Sweeps, TellHowMuchIsFinished) {
   const Experiment experiment = load();
   SweepOptions part = options("run", 2);
   part.shard = Shard{1, 3};
-  EXPECT_EQ(survey_sweep(experiment, folder_ / "run").done, 0u);
+  EXPECT_EQ(survey_sweep(experiment, options("run", 1)).value().done, 0u);
   ASSERT_TRUE(run_sweep(experiment, part));
-  const SweepProgress progress = survey_sweep(experiment, folder_ / "run");
+  const SweepProgress progress = survey_sweep(experiment, options("run", 1)).value();
   EXPECT_EQ(progress.done, 3u);
   EXPECT_EQ(progress.total, 8u);
 }
@@ -208,7 +208,7 @@ TEST_F(Sweeps, TellWhichShardsAreMissingFromAMerge) {
   SweepOptions first = options("run", 2);
   first.shard = Shard{1, 3};
   ASSERT_TRUE(run_sweep(experiment, first));
-  const Result<SweepResult> merged = merge_sweep(experiment, folder_ / "run");
+  const Result<SweepResult> merged = merge_sweep(experiment, options("run", 1));
   ASSERT_FALSE(merged);
   EXPECT_EQ(
       merged.errors().front().to_string(),
@@ -243,6 +243,89 @@ TEST_F(Sweeps, ForgetTheShardsToo) {
   ASSERT_TRUE(run_sweep(experiment, fresh));
   EXPECT_EQ(last.resumed, 0u);
   EXPECT_FALSE(fs::exists(folder_ / "run" / results_file(Shard{1, 2})));
+}
+
+TEST_F(Sweeps, TellAnEditedLineAndRunItsTrialAgain) {
+  const Experiment experiment = load();
+  const std::string whole = tables(experiment, options("run", 2));
+  const fs::path file = folder_ / "run" / results_file({});
+  std::string log = read(file);
+  const std::string radius = "\"com.radius_mean_mm\":";
+  const std::size_t second_line = log.find('\n') + 1;
+  log.insert(log.find(radius, second_line) + radius.size(), "-");
+  std::ofstream(file) << log;
+
+  std::vector<std::string> told;
+  std::size_t resumed = 0;
+  SweepOptions again = options("run", 2);
+  again.unused_lines = [&](const Errors& lines) {
+    for (const Error& line : lines) told.push_back(line.to_string());
+  };
+  again.progress = [&](const SweepProgress& progress) { resumed = progress.resumed; };
+  EXPECT_EQ(whole, tables(experiment, again));
+  EXPECT_EQ(told,
+            std::vector{file.string() + ":2: is damaged or edited: its checksum does not fit"});
+  EXPECT_EQ(resumed, 7u);
+  told.clear();
+  EXPECT_EQ(whole, tables(experiment, again));
+  EXPECT_TRUE(told.empty());
+  EXPECT_EQ(resumed, 8u);
+}
+
+TEST_F(Sweeps, TellTheResultsThatAreOfNoTrial) {
+  ASSERT_TRUE(run_sweep(load(), options("run", 2)));
+  const Experiment fewer = load(tiny_but("seeds = [1, 2]", "seeds = [1]"));
+  Errors told;
+  SweepOptions again = options("run", 2);
+  again.unused_lines = [&](const Errors& lines) { told = lines; };
+  ASSERT_TRUE(run_sweep(fewer, again));
+  ASSERT_EQ(told.size(), 4u);
+  EXPECT_NE(told.front().to_string().find("is of no trial of this experiment"), std::string::npos);
+  again.beside = {"other"};  // whose trials they may be
+  told.clear();
+  ASSERT_TRUE(run_sweep(fewer, again));
+  EXPECT_TRUE(told.empty());
+}
+
+TEST_F(Sweeps, RefuseTheFolderOfAnotherExperiment) {
+  const Experiment tiny = load(tiny_but("seeds = [1, 2]", "seeds = [1]"));
+  ASSERT_TRUE(run_sweep(tiny, options("run", 2)));
+  const std::string before = read(folder_ / "run" / results_file({}));
+  Experiment other = tiny;
+  other.name = "other";
+  const std::string expected = (folder_ / "run").string() +
+                               ": holds results of the experiment \"tiny\"; allowed for "
+                               "\"other\": a folder of its own, by --out";
+  SweepOptions fresh = options("run", 1);
+  fresh.fresh = true;
+  const auto refusal = [](const auto& result) {
+    return result ? std::string("runs") : result.errors().front().to_string();
+  };
+  EXPECT_EQ(refusal(run_sweep(other, options("run", 1))), expected);
+  EXPECT_EQ(refusal(run_sweep(other, fresh)), expected);
+  EXPECT_EQ(refusal(merge_sweep(other, options("run", 1))), expected);
+  EXPECT_EQ(refusal(survey_sweep(other, options("run", 1))), expected);
+  EXPECT_EQ(read(folder_ / "run" / results_file({})), before);
+
+  SweepOptions shared = options("run", 1);
+  shared.beside = {"tiny"};
+  shared.progress = [](const SweepProgress& progress) { EXPECT_EQ(progress.resumed, 4u); };
+  EXPECT_TRUE(run_sweep(other, shared));
+}
+
+TEST_F(Sweeps, RefuseTheFolderOfADifferentExperimentOfTheSameName) {
+  ASSERT_TRUE(run_sweep(load(tiny_but("seeds = [1, 2]", "seeds = [1]")), options("run", 2)));
+  std::string text = tiny_but("[\"asc\", \"ours\"]", "[\"first\", \"second\"]");
+  text.replace(text.find("label = \"asc\""), 13, "label = \"first\"");
+  text.replace(text.find("label = \"ours\""), 14, "label = \"second\"");
+  const Experiment relabelled = load(text);
+  EXPECT_TRUE(survey_sweep(relabelled, options("run", 1)));  // the same trials
+  text.replace(text.find("run.turns = 0.02"), 16, "run.turns = 0.03");
+  const Result<SweepResult> refused = run_sweep(load(text), options("run", 1));
+  ASSERT_FALSE(refused);
+  EXPECT_NE(
+      refused.errors().front().to_string().find("holds results of a different experiment \"tiny\""),
+      std::string::npos);
 }
 
 TEST_F(Sweeps, RefuseABadTerrainBeforeAnythingRuns) {
@@ -337,6 +420,30 @@ TEST_F(Sweeps, SayOnceWhatAllRowsHaveInCommon) {
       << text;
   EXPECT_NE(text.find("| row | duty | tracker | plant.friction | falls |"), std::string::npos)
       << text;
+}
+
+TEST_F(Sweeps, EscapeLabelsInEveryTable) {
+  const std::string label = "a|b `c` *d* <script>e</script> \\\\ [f](g) _h_";
+  std::string text = tiny_but("label = \"asc\"", "label = \"" + label + "\"");
+  text.replace(text.find("ladder = [\"asc\""), 15, "ladder = [\"" + label + "\"");
+  text.replace(text.find("radius, mm"), 10, "r|s, <b>");
+  text.insert(0, "title = \"t <i>\"\nnote = \"*n* <i>\"\n");
+  const Experiment experiment = load(text);
+  const SweepResult result =
+      made_up(experiment, [](std::size_t row, auto) { return row == 0 ? Number() : Number(1.0); });
+  const Report report(experiment, result);
+  const std::string page = report.markdown();
+  const std::string shown = "a\\|b \\`c\\` \\*d\\* &lt;script>e&lt;/script> \\\\ [f\\](g) \\_h\\_";
+  EXPECT_NE(page.find("\n| " + shown + " |"), page.npos) << page;
+  EXPECT_NE(page.find("\n- " + shown + ", plant.friction 0.6: 2 of 2\n"), page.npos) << page;
+  EXPECT_NE(page.find(": " + shown + " fell -> ours"), page.npos) << page;
+  EXPECT_NE(page.find("| r\\|s, &lt;b> |"), page.npos) << page;
+  EXPECT_NE(page.find("# t &lt;i>\n"), page.npos) << page;
+  EXPECT_NE(page.find("\n*n* &lt;i>\n"), page.npos) << page;
+  EXPECT_EQ(page.find('<'), page.npos) << page;
+  EXPECT_EQ(page.find('{'), page.npos) << page;  // every text is filled
+  EXPECT_NE(report.csv().find("\na|b `c` *d* <script>e</script> \\ [f](g) _h_,nominal,"), page.npos)
+      << report.csv();
 }
 
 TEST(TrialKey, StandsForTheConfiguration) {

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
-from typing import TextIO
+from typing import BinaryIO
 
 from pirouette import command
 from pirouette.cluster import shard
@@ -89,32 +89,29 @@ def unfinished(program: str, study: Study) -> int:
     return total - done
 
 
-def known_results(folder: Path) -> str:
-    """Whole lines of all results in `folder`."""
-    lines = []
-    for file in sorted(folder.glob("results*.jsonl")):
-        lines += [line for line in file.read_text().splitlines(True) if line.endswith("\n")]
-    return "".join(lines)
+def known_results(folder: Path) -> bytes:
+    """Whole lines of all results in `folder`; the program checks them."""
+    texts = [file.read_bytes() for file in sorted(folder.glob("results*.jsonl"))]
+    return b"".join(text[: text.rfind(b"\n") + 1] for text in texts)
 
 
 @contextmanager
-def open_results(folder: Path) -> Iterator[TextIO]:
+def open_results(folder: Path) -> Iterator[BinaryIO]:
     """The results of the cluster to append to; nobody else writes them meanwhile."""
     (folder / "traces").mkdir(parents=True, exist_ok=True)
     path = folder / RESULTS
     path.touch()
-    with path.open("r+") as file:
+    with path.open("r+b") as file:
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except BlockingIOError:
             raise Error(f"{path}: is in use: another cluster run writes to this folder") from None
-        whole = file.read().rpartition("\n")  # what a killed process left of a line is cut off
-        file.seek(len(whole[0] + whole[1]))
-        file.truncate()
+        file.truncate(file.read().rfind(b"\n") + 1)  # what a killed process left of a line
+        file.seek(0, os.SEEK_END)
         yield file
 
 
-def keep(finished: Finished, folder: Path, results: TextIO) -> None:
+def keep(finished: Finished, folder: Path, results: BinaryIO) -> None:
     """Traces first: a result in the file says that its trace is there."""
     for name, trace in finished.traces.items():
         with command.whole_file(folder / "traces" / name) as part:

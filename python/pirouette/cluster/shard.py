@@ -22,14 +22,14 @@ class Work:
     options: tuple[str, ...]
     folder: str  # where relative paths begin, if the node has it
     environment: dict[str, str]
-    known: str  # results so far: lines of JSON
+    known: bytes  # results so far: lines of JSON
 
 
 @dataclass(frozen=True)
 class Finished:
     """What one shard has left, or why it has not."""
 
-    results: str = ""  # lines of JSON
+    results: bytes = b""  # lines of JSON
     traces: dict[str, bytes] = field(default_factory=dict)  # by file name
     error: str = ""
 
@@ -57,12 +57,12 @@ def run_shard(work: Work, index: int, count: int) -> Finished:
         file, out = Path(scratch, work.name), Path(scratch, "out")
         file.write_text(work.text)
         out.mkdir()
-        (out / "results.jsonl").write_text(work.known)
+        (out / "results.jsonl").write_bytes(work.known)
         shard = ("--out", out, "--jobs", 1, "--shard", f"{index}/{count}")
         done = call(work, work.verb, file, *shard, *work.options)
         if done.returncode != 0:
             return Finished(error=f"{node}: shard {index}/{count}: {done.stderr.strip()}")
         return Finished(
-            (out / f"results-{index}of{count}.jsonl").read_text(),
+            (out / f"results-{index}of{count}.jsonl").read_bytes(),
             {trace.name: trace.read_bytes() for trace in (out / "traces").glob("*.npy")},
         )

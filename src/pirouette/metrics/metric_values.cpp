@@ -1,10 +1,34 @@
 #include "pirouette/metrics/metric_values.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <string_view>
 #include <type_traits>
 
 namespace pirouette {
+namespace {
+
+/// Parts of the names of lengths, times, sizes and variances, which are never negative.
+constexpr std::string_view kSizes[] = {
+    "_time_s",      "_delay_s",    "distance", "radius",         "variance",
+    "peak_to_peak", "drift",       "_range",   "body_bias_mm_s", "bias_circle",
+    "cross_track",  "along_track", "slip",     "position_error", "yaw_error_",
+};
+
+}  // namespace
+
+bool MetricRange::holds(double value) const {
+  if (is_bool) return value == 0.0 || value == 1.0;
+  return std::isfinite(value) && (!is_size || value >= 0.0);
+}
+
+MetricRange metric_range(const std::string& name) {
+  const bool is_size =
+      std::any_of(std::begin(kSizes), std::end(kSizes),
+                  [&](std::string_view part) { return name.find(part) != name.npos; });
+  return {.is_bool = name == "fell" || name == "interrupted", .is_size = is_size};
+}
 
 MetricValues metric_values(const Metrics& metrics) {
   MetricValues values;

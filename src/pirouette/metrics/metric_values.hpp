@@ -16,6 +16,18 @@ using MetricValues = std::map<std::string, Number>;
 /// The numbers of `metrics`; nullopt where absent or not finite.
 MetricValues metric_values(const Metrics& metrics);
 
+/// What a metric may be.
+struct MetricRange {
+  bool is_bool = false;  ///< 0 or 1
+  bool is_size = false;  ///< from 0 on
+
+  /// Whether `value` is finite and may be.
+  bool holds(double value) const;
+};
+
+/// Of an entry of metric_names().
+MetricRange metric_range(const std::string& name);
+
 /// Keys of MetricValues in the order of metrics.json.
 std::vector<std::string> metric_names();
 

@@ -5,9 +5,12 @@
 
 #include "pirouette/metrics/statistics.hpp"
 #include "pirouette/report/report_format.hpp"
+#include "pirouette/report/report_words.hpp"
 
 namespace pirouette {
 namespace {
+
+namespace text = words::comparison;
 
 /// Whether what was printed may hold for a trial at `levels`.
 bool applies(const PrintedResult& printed, const Experiment& experiment,
@@ -44,19 +47,23 @@ std::string why_missed(const BoundCheck& check) {
   const ExperimentBound& bound = *check.bound;
   const ReportEntry& entry = *check.entry;
   if (entry.falls > 0 && !is_of_falls(bound.metric)) {
-    return "counts as missed, " + std::to_string(entry.falls) + " of " +
-           std::to_string(entry.trials) + " trials fell";
+    return fill(
+        text::kTrialsFell,
+        {{"falls", fill(text::kFallsOfTrials, {{"falls", std::to_string(entry.falls)},
+                                               {"trials", std::to_string(entry.trials)}})}});
   }
   const Spread* spread = find_metric(entry, bound.metric);
-  if (spread == nullptr) return "is absent";
+  if (spread == nullptr) return text::kIsAbsent;
   if (!bound.relative_to.empty() && !check.max) {
-    return "cannot be judged: it is absent in " + bound.relative_to;
+    return fill(text::kOtherAbsent, {{"row", bound.relative_to}});
   }
   if (bound.min && !(spread->mean >= *bound.min)) {
-    return short_number(spread->mean) + ", below " + short_number(*bound.min);
+    return fill(text::kBelow,
+                {{"value", short_number(spread->mean)}, {"limit", short_number(*bound.min)}});
   }
   if (check.max && !(spread->mean <= *check.max)) {
-    return short_number(spread->mean) + ", above " + short_number(*check.max);
+    return fill(text::kAbove,
+                {{"value", short_number(spread->mean)}, {"limit", short_number(*check.max)}});
   }
   return "";
 }
@@ -113,9 +120,10 @@ std::vector<std::string> Report::missed_bounds() const {
   std::vector<std::string> missed;
   for (const BoundCheck& check : check_bounds()) {
     if (check.missed.empty()) continue;
-    missed.push_back(place_text(*experiment, *check.entry) + " (" +
-                     check.entry->first->config.profile + "): " + check.bound->metric + " " +
-                     check.missed);
+    missed.push_back(fill(text::kMissedBound, {{"place", place_text(*experiment, *check.entry)},
+                                               {"profile", check.entry->first->config.profile},
+                                               {"metric", check.bound->metric},
+                                               {"why", check.missed}}));
   }
   return missed;
 }

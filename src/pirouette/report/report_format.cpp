@@ -1,8 +1,10 @@
 #include "pirouette/report/report_format.hpp"
 
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <string_view>
 
 #include "pirouette/config/config_doc.hpp"
 
@@ -33,15 +35,51 @@ const ReportContext kContexts[] = {
      [](const Config& c) { return std::string(enum_name(c.estimation.source)); }},
 };
 
+bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || (c & 0x80) != 0; }
+
+/// Whether the character at `i` means something in Markdown: an underscore within a word and a
+/// bracket without a link do not.
+bool is_markup(const std::string& text, std::size_t i) {
+  const auto is_word_at = [&](std::size_t at) { return at < text.size() && is_word(text[at]); };
+  if (text[i] == '_') return i == 0 || !is_word_at(i - 1) || !is_word_at(i + 1);
+  if (text[i] == ']') return i + 1 < text.size() && (text[i + 1] == '(' || text[i + 1] == '[');
+  const bool before_space = i + 1 < text.size() && text[i + 1] == ' ';
+  if (i == 0 && (text[i] == '-' || text[i] == '+')) return before_space;
+  if (i == 0 && (text[i] == '#' || text[i] == '>')) return true;
+  return std::string_view("\\`*|~").find(text[i]) != std::string_view::npos;
+}
+
 }  // namespace
 
 std::span<const ReportContext> report_contexts() { return kContexts; }
 
 std::string csv_cell(const std::string& text) {
-  if (text.find_first_of(",\"\n") == text.npos) return text;
+  if (text.find_first_of(",\"\n\r") == text.npos) return text;
   std::string out = "\"";
   for (const char c : text) out += c == '"' ? "\"\"" : std::string(1, c);
   return out + "\"";
+}
+
+std::string markdown(const std::string& text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '<') {
+      out += "&lt;";
+    } else if (c == '&') {
+      out += "&amp;";
+    } else {
+      if (is_markup(text, i)) out += '\\';
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string without_html(const std::string& text) {
+  std::string out;
+  for (const char c : text) out += c == '<' ? "&lt;" : std::string(1, c);
+  return out;
 }
 
 std::string csv_cell(double value) { return nlohmann::json(value).dump(); }

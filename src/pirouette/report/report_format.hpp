@@ -31,7 +31,13 @@ std::string csv_cell(const std::string& text);
 /// A CSV cell: the shortest text that reads back as the same number.
 std::string csv_cell(double value);
 
-/// `value` with three significant digits.
+/// `text`, of one line, as Markdown that shows it as it is: no mark-up, no HTML, no end of a
+/// table's cell.
+std::string markdown(const std::string& text);
+/// `text` of Markdown without HTML.
+std::string without_html(const std::string& text);
+
+/// Three significant digits.
 std::string short_number(double value);
 /// "1.23 ± 0.04"; without the deviation for a single seed.
 std::string with_spread(const Spread& spread);
@@ -41,7 +47,7 @@ const Spread* find_metric(const ReportEntry& entry, const std::string& metric);
 /// Printed value of `metric`; nullptr: none.
 const double* find_printed(const ReportEntry& entry, const std::string& metric);
 
-/// "plant.friction 0.4, com.planner psp": the axes' values, without the profile.
+/// "plant.friction 0.4, com.planner psp": the axes' values, without the profile; plain text.
 std::string axes_text(const Experiment& experiment, const ExperimentTrial& trial);
 /// The row's label and axes_text().
 std::string place_text(const Experiment& experiment, const ReportEntry& entry);

@@ -9,9 +9,12 @@
 #include "pirouette/metrics/statistics.hpp"
 #include "pirouette/plant/plant.hpp"
 #include "pirouette/report/report_format.hpp"
+#include "pirouette/report/report_words.hpp"
 
 namespace pirouette {
 namespace {
+
+namespace text = words::comparison;
 
 constexpr const char* kBias = "com.body_bias_mm_s";
 constexpr const char* kBiasCircle = "com.bias_circle_mm";
@@ -41,19 +44,28 @@ class MarkdownWriter {
       : report_(report), experiment_(*report.experiment) {}
 
   std::string write() {
-    out_ << "# " << experiment_.title << "\n\n";
-    out_ << "pirouette " << version() << " (" << commit() << "), MuJoCo " << physics_version()
-         << ". Mean ± standard deviation over " << experiment_.seeds.size()
-         << (experiment_.seeds.size() == 1 ? " seed" : " seeds");
-    if (!experiment_.source.empty()) out_ << "; printed: " << experiment_.source;
-    out_ << ".\n";
-    if (!experiment_.note.empty()) out_ << "\n" << experiment_.note << "\n";
+    out_ << fill(words::kTitle, {{"title", markdown(experiment_.title)},
+                                 {"version", version()},
+                                 {"commit", commit()},
+                                 {"mujoco", physics_version()},
+                                 {"size", size()}});
+    if (!experiment_.note.empty()) {
+      out_ << fill(words::kNote, {{"note", without_html(experiment_.note)}});
+    }
     for (const std::string& profile : profiles()) write_profile(profile);
     write_bounds();
     return out_.str();
   }
 
  private:
+  std::string size() const {
+    const std::string& source = experiment_.source;
+    return fill(
+        experiment_.seeds.size() == 1 ? text::kOneSeed : text::kSeeds,
+        {{"seeds", std::to_string(experiment_.seeds.size())},
+         {"source", source.empty() ? "" : fill(text::kSource, {{"source", markdown(source)}})}});
+  }
+
   std::vector<std::string> profiles() const {
     std::vector<std::string> names;
     for (const ReportEntry& entry : report_.entries) {
@@ -68,13 +80,17 @@ class MarkdownWriter {
     for (const ReportEntry& entry : report_.entries) {
       if (entry.first->config.profile == profile) entries_.push_back(&entry);
     }
-    out_ << "\n## Plant: " << profile << "\n\n";
+    out_ << fill(text::kProfile, {{"profile", markdown(profile)}});
     write_table();
     write_falls();
     write_comparison();
     for (const ExperimentAxis& among : unnamed_values()) write_nearest(among);
     write_bias();
     write_ladder();
+  }
+
+  std::string place(const ReportEntry& entry) const {
+    return markdown(place_text(experiment_, entry));
   }
 
   bool is_printed(const std::string& metric) const {
@@ -105,49 +121,53 @@ class MarkdownWriter {
   /// What all rows have in common becomes a sentence, the rest columns.
   void write_contexts() {
     columns_.clear();
-    std::string common;
+    std::vector<std::string> common;
     for (const ReportContext& context : report_contexts()) {
       if (varies(context)) {
         columns_.push_back(&context);
         continue;
       }
-      common += (common.empty() ? "" : "; ") + without_unit(context.title) + " " +
-                context.text(entries_.front()->first->config) + unit_of(context.title);
+      common.push_back(
+          fill(text::kContext, {{"name", without_unit(context.title)},
+                                {"value", markdown(context.text(entries_.front()->first->config))},
+                                {"unit", unit_of(context.title)}}));
     }
-    if (!common.empty()) out_ << "Everywhere: " << common << ".\n\n";
+    if (!common.empty()) {
+      out_ << fill(text::kEverywhere, {{"values", joined_by("; ", common)}});
+    }
   }
 
   void write_table() {
     write_contexts();
-    std::string head = "| row |";
-    std::string rule = "|---|";
+    std::string head = "|", rule = "|";
     const auto add = [&](const std::string& title) {
-      head += " " + title + " |";
+      head += " " + markdown(title) + " |";
       rule += "---|";
     };
+    add(text::kRow);
     for (const ReportContext* context : columns_) add(context->title);
     for (const std::size_t axis : extra_axes()) add(experiment_.axes[axis].key);
-    add("falls");
+    add(text::kFalls);
     for (const ExperimentColumn& column : experiment_.columns) {
       add(column.title);
-      if (is_printed(column.metric)) add("printed");
+      if (is_printed(column.metric)) add(text::kPrinted);
     }
     out_ << head << "\n" << rule << "\n";
     for (const ReportEntry* entry : entries_) write_line(*entry);
   }
 
   void write_line(const ReportEntry& entry) {
-    out_ << "| " << entry.row->label << " |";
+    out_ << "| " << markdown(entry.row->label) << " |";
     for (const ReportContext* context : columns_) {
-      out_ << " " << context->text(entry.first->config) << " |";
+      out_ << " " << markdown(context->text(entry.first->config)) << " |";
     }
     for (const std::size_t axis : extra_axes()) {
-      out_ << " " << experiment_.axes[axis].values[entry.first->levels[axis]] << " |";
+      out_ << " " << markdown(experiment_.axes[axis].values[entry.first->levels[axis]]) << " |";
     }
-    out_ << " " << entry.falls << " of " << entry.trials << " |";
+    out_ << " " << falls_of_trials(entry) << " |";
     for (const ExperimentColumn& column : experiment_.columns) {
       const Spread* spread = find_metric(entry, column.metric);
-      out_ << " " << (spread != nullptr ? with_spread(*spread) : "-") << " |";
+      out_ << " " << (spread != nullptr ? with_spread(*spread) : text::kAbsent) << " |";
       if (!is_printed(column.metric)) continue;
       const double* printed = find_printed(entry, column.metric);
       out_ << " " << (printed != nullptr ? short_number(*printed) : "") << " |";
@@ -155,17 +175,28 @@ class MarkdownWriter {
     out_ << "\n";
   }
 
+  static std::string falls_of_trials(const ReportEntry& entry) {
+    return fill(text::kFallsOfTrials,
+                {{"falls", std::to_string(entry.falls)}, {"trials", std::to_string(entry.trials)}});
+  }
+
   void write_falls() {
     std::string falls;
     for (const ReportEntry* entry : entries_) {
       if (entry->falls == 0) continue;
-      falls += "- " + place_text(experiment_, *entry) + ": " + std::to_string(entry->falls) +
-               " of " + std::to_string(entry->trials);
-      const Spread* time = find_metric(*entry, kFallTime);
-      if (time != nullptr) falls += ", after " + with_spread(*time) + " s";
-      falls += "\n";
+      falls +=
+          fill(text::kFall, {{"place", place(*entry)},
+                             {"falls", falls_of_trials(*entry)},
+                             {"after", with_metric(text::kFallTime, "time", *entry, kFallTime)}});
     }
-    out_ << (falls.empty() ? "\nNo trial fell.\n" : "\nFalls:\n\n" + falls);
+    out_ << (falls.empty() ? text::kNoTrialFell : text::kFallsTitle + falls);
+  }
+
+  /// `words` with the metric as its value `name`; empty where the metric is absent.
+  static std::string with_metric(const char* words, const char* name, const ReportEntry& entry,
+                                 const char* metric) {
+    const Spread* spread = find_metric(entry, metric);
+    return spread != nullptr ? fill(words, {{name, with_spread(*spread)}}) : "";
   }
 
   void write_comparison() {
@@ -173,39 +204,47 @@ class MarkdownWriter {
                      [](const ReportEntry* entry) { return entry->printed != nullptr; })) {
       return;
     }
-    out_ << "\nAgainst the printed figures:\n\n";
+    out_ << text::kAgainstPrinted;
     for (const ReportEntry* entry : entries_) {
       if (entry->printed != nullptr) write_difference(*entry);
     }
   }
 
   void write_difference(const ReportEntry& entry) {
-    out_ << "- " << place_text(experiment_, entry) << ": ";
     if (entry.falls == entry.trials) {
-      out_ << "every trial fell.\n";
+      out_ << fill(text::kEveryTrialFell, {{"place", place(entry)}});
       return;
     }
-    const char* separator = "";
+    std::vector<std::string> differences;
     for (const ExperimentColumn& column : experiment_.columns) {
       const double* printed = find_printed(entry, column.metric);
       const Spread* ours = find_metric(entry, column.metric);
       if (printed == nullptr || ours == nullptr) continue;
-      out_ << separator << without_unit(column.title) << " " << short_number(ours->mean) << " vs "
-           << short_number(*printed) << unit_of(column.title) << " ("
-           << difference(ours->mean, *printed) << ")";
-      separator = "; ";
+      differences.push_back(
+          fill(text::kDifference, {{"quantity", markdown(without_unit(column.title))},
+                                   {"ours", short_number(ours->mean)},
+                                   {"printed", short_number(*printed)},
+                                   {"unit", markdown(unit_of(column.title))},
+                                   {"difference", difference(ours->mean, *printed)}}));
     }
+    const Spread* drift = find_metric(entry, kDrift);
+    out_ << fill(
+        text::kDifferences,
+        {{"place", place(entry)},
+         {"differences", joined_by("; ", differences)},
+         {"bias", bias_text(entry)},
+         {"drift",
+          drift != nullptr ? fill(text::kDrift, {{"drift", short_number(drift->mean)}}) : ""}});
+  }
+
+  static std::string bias_text(const ReportEntry& entry) {
     const Spread* bias = find_metric(entry, kBias);
     const Spread* circle = find_metric(entry, kBiasCircle);
-    const Spread* drift = find_metric(entry, kDrift);
     const Spread* odometry = find_metric(entry, kOdometry);
-    if (bias != nullptr && circle != nullptr && odometry != nullptr) {
-      out_ << ". Body-frame bias " << short_number(bias->mean) << " mm/s, which draws a circle of "
-           << short_number(circle->mean) << " mm; position estimate off by "
-           << short_number(odometry->mean) << " mm";
-    }
-    if (drift != nullptr) out_ << "; drift " << short_number(drift->mean) << " mm per turn";
-    out_ << ".\n";
+    if (bias == nullptr || circle == nullptr || odometry == nullptr) return "";
+    return fill(text::kBias, {{"bias", short_number(bias->mean)},
+                              {"circle", short_number(circle->mean)},
+                              {"odometry", short_number(odometry->mean)}});
   }
 
   /// The axes, with values, of which the source does not say which value it had.
@@ -248,9 +287,8 @@ class MarkdownWriter {
   }
 
   void write_nearest(const ExperimentAxis& among) {
-    out_ << "\nThe source does not say which " << among.key
-         << " its figures hold for: " << joined(among.values)
-         << ". How far ours is from them, as a factor (geometric mean over what is printed):\n\n";
+    out_ << fill(text::kNotSaid,
+                 {{"key", markdown(among.key)}, {"values", markdown(joined(among.values))}});
     std::set<std::string> papers;
     for (const ReportEntry* entry : entries_) {
       if (entry->printed != nullptr && entry->printed->among == among) {
@@ -258,35 +296,40 @@ class MarkdownWriter {
       }
     }
     for (const std::string& paper : papers) write_factors(among, paper, paper);
-    if (papers.size() > 1) write_factors(among, "", "all together");
+    if (papers.size() > 1) write_factors(among, "", text::kAllTogether);
   }
 
   void write_factors(const ExperimentAxis& among, const std::string& paper,
                      const std::string& title) {
-    std::string list, nearest;
+    std::vector<std::string> factors;
+    std::string nearest;
     Number least;
     for (const std::string& value : among.values) {
       const Number off = factor_off(among, value, paper);
-      list += (list.empty() ? "" : ", ") + value + " " + (off ? short_number(*off) : "fell");
+      factors.push_back(markdown(value) + " " + (off ? short_number(*off) : text::kFell));
       if (!off || (least && *off >= *least)) continue;
       least = off;
-      nearest = value;
+      nearest = fill(text::kNearest, {{"value", markdown(value)}});
     }
-    out_ << "- " << title << ": "
-         << (nearest.empty() ? "nothing to compare" : "nearest is " + nearest) << " (" << list
-         << ").\n";
+    out_ << fill(text::kFactors, {{"paper", markdown(title)},
+                                  {"nearest", nearest.empty() ? text::kNothingToCompare : nearest},
+                                  {"factors", joined_by(", ", factors)}});
   }
 
   static std::string difference(double ours, double printed) {
-    if (printed == 0.0) return short_number(ours - printed) + " more";
+    if (printed == 0.0) {
+      return fill(text::kMore, {{"number", short_number(ours - printed)}});
+    }
     const double ratio = ours / printed;
-    if (ratio < 0.0) return "opposite sign";
+    if (ratio < 0.0) return text::kOppositeSign;
     constexpr double kFactor = 2.0;  // from here on a factor reads better than a percentage
-    if (ratio >= kFactor) return short_number(ratio) + " times";
-    if (ratio > 0.0 && ratio <= 1.0 / kFactor) return "1/" + short_number(1.0 / ratio);
-    char text[32];
-    std::snprintf(text, sizeof text, "%+.0f %%", kPercent * (ratio - 1.0));
-    return text;
+    if (ratio >= kFactor) return fill(text::kTimes, {{"number", short_number(ratio)}});
+    if (ratio > 0.0 && ratio <= 1.0 / kFactor) {
+      return fill(text::kPart, {{"number", short_number(1.0 / ratio)}});
+    }
+    char percent[32];
+    std::snprintf(percent, sizeof percent, "%+.0f %%", kPercent * (ratio - 1.0));
+    return percent;
   }
 
   /// How much of the radii the bias explains, where the experiment looks at it.
@@ -306,17 +349,16 @@ class MarkdownWriter {
     const Number low = quantile(shares, 0.25), middle = quantile(shares, 0.5),
                  high = quantile(shares, 0.75);
     if (!low || !middle || !high) return;
-    out_ << "\nThe circle that the body-frame bias draws (bias / yaw rate) is "
-         << short_number(*middle)
-         << " of the radius measured in the median over these rows (quartiles "
-         << short_number(*low) << " and " << short_number(*high) << ").\n";
+    out_ << fill(text::kBiasShare, {{"middle", short_number(*middle)},
+                                    {"low", short_number(*low)},
+                                    {"high", short_number(*high)}});
   }
 
   void write_ladder() {
     if (experiment_.ladder.empty() || experiment_.columns.empty()) return;
     const std::string& metric = experiment_.columns.front().metric;
     const std::string title = column_title(experiment_, metric);
-    out_ << "\nThe ladder, " << title << " (each step should be smaller than the one before):\n\n";
+    out_ << fill(text::kLadder, {{"quantity", markdown(title)}});
     std::vector<std::string> done;
     for (const ReportEntry* at : entries_) {
       const std::string axes = axes_text(experiment_, *at->first);
@@ -328,56 +370,62 @@ class MarkdownWriter {
 
   void write_rungs(const std::vector<std::size_t>& levels, const std::string& axes,
                    const std::string& metric) {
-    out_ << "- " << (axes.empty() ? "everywhere" : axes) << ": ";
     const Spread* before = nullptr;
-    std::string broken;
+    std::vector<std::string> rungs;
+    std::string verdict = words::kHolds;
     bool complete = true;
     for (const std::string& label : experiment_.ladder) {
       const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const ReportEntry* e) {
         return e->row->label == label && e->first->levels == levels;
       });
       const Spread* rung = entry == entries_.end() ? nullptr : find_metric(**entry, metric);
-      out_ << (label == experiment_.ladder.front() ? "" : " -> ") << label << " "
-           << (rung != nullptr ? with_spread(*rung) : "fell");
+      rungs.push_back(markdown(label) + " " + (rung != nullptr ? with_spread(*rung) : text::kFell));
       complete = complete && rung != nullptr;
-      if (before != nullptr && rung != nullptr && rung->mean >= before->mean && broken.empty()) {
-        broken = label;
+      if (before != nullptr && rung != nullptr && rung->mean >= before->mean &&
+          verdict == words::kHolds) {
+        verdict = fill(text::kDoesNotHold, {{"row", markdown(label)}});
       }
       if (rung != nullptr) before = rung;
     }
-    if (!complete) {
-      out_ << ": incomplete.\n";
-    } else {
-      out_ << (broken.empty() ? ": holds.\n" : ": does not hold, " + broken + " is no better.\n");
-    }
+    out_ << fill(text::kRungs, {{"place", axes.empty() ? text::kEveryPlace : markdown(axes)},
+                                {"rungs", joined_by(" -> ", rungs)},
+                                {"verdict", complete ? verdict : text::kIncomplete}});
   }
 
   void write_bounds() {
     if (experiment_.bounds.empty()) return;
     std::size_t held = 0;
-    std::ostringstream table;
+    std::string table;
     const std::vector<BoundCheck> checks = report_.check_bounds();
     for (const BoundCheck& check : checks) {
       const Spread* spread = find_metric(*check.entry, check.bound->metric);
-      table << "| " << place_text(experiment_, *check.entry) << " | "
-            << column_title(experiment_, check.bound->metric) << " | " << allowed(check) << " | "
-            << (spread != nullptr ? with_spread(*spread) : "-") << " | "
-            << (check.missed.empty() ? "holds" : "**missed**: " + check.missed) << " |\n";
-      held += check.missed.empty() ? 1 : 0;
+      const bool holds = check.missed.empty();
+      table += fill(text::kBound,
+                    {{"place", place(*check.entry)},
+                     {"quantity", markdown(column_title(experiment_, check.bound->metric))},
+                     {"allowed", allowed(check)},
+                     {"measured", spread != nullptr ? with_spread(*spread) : text::kAbsent},
+                     {"verdict", holds ? words::kHolds
+                                       : fill(text::kMissed, {{"why", markdown(check.missed)}})}});
+      held += holds ? 1 : 0;
     }
-    out_ << "\n## Acceptance: " << held << " of " << checks.size() << " bounds hold\n\n"
-         << "| row | quantity | allowed | measured | |\n|---|---|---|---|---|\n"
-         << table.str();
+    out_ << fill(text::kAcceptance,
+                 {{"held", std::to_string(held)}, {"bounds", std::to_string(checks.size())}})
+         << table;
   }
 
   static std::string allowed(const BoundCheck& check) {
     const ExperimentBound& bound = *check.bound;
-    std::string text;
-    if (bound.min) text = ">= " + short_number(*bound.min);
-    if (check.max) text += (text.empty() ? "" : ", ") + ("<= " + short_number(*check.max));
-    if (bound.relative_to.empty()) return text;
-    return text + " (" + (bound.max ? short_number(*bound.max) + " + " : "") +
-           short_number(bound.share) + " of " + bound.relative_to + ")";
+    std::vector<std::string> limits;
+    if (bound.min) limits.push_back(fill(text::kMin, {{"min", short_number(*bound.min)}}));
+    if (check.max) limits.push_back(fill(text::kMax, {{"max", short_number(*check.max)}}));
+    const std::string all = joined_by(", ", limits);
+    if (bound.relative_to.empty()) return all;
+    return all +
+           fill(text::kShare,
+                {{"base", bound.max ? fill(text::kBase, {{"max", short_number(*bound.max)}}) : ""},
+                 {"share", short_number(bound.share)},
+                 {"row", markdown(bound.relative_to)}});
   }
 
   const Report& report_;

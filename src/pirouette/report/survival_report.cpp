@@ -10,10 +10,13 @@
 #include "pirouette/metrics/statistics.hpp"
 #include "pirouette/plant/plant.hpp"
 #include "pirouette/report/report_format.hpp"
+#include "pirouette/report/report_words.hpp"
 #include "pirouette/study/repeat_command.hpp"
 
 namespace pirouette {
 namespace {
+
+namespace text = words::survival;
 
 using Json = nlohmann::ordered_json;
 
@@ -60,11 +63,17 @@ class MarkdownWriter {
       : report_(report), experiment_(*report.experiment) {}
 
   std::string write() {
-    out_ << "# " << experiment_.title << "\n\n"
-         << "pirouette " << version() << " (" << commit() << "), MuJoCo " << physics_version()
-         << ". " << experiment_.trials.size() << " trials, seed of the draws "
-         << experiment_.random->seed << ".\n";
-    if (!experiment_.note.empty()) out_ << "\n" << experiment_.note << "\n";
+    out_ << fill(
+        words::kTitle,
+        {{"title", markdown(experiment_.title)},
+         {"version", version()},
+         {"commit", commit()},
+         {"mujoco", physics_version()},
+         {"size", fill(text::kSize, {{"trials", std::to_string(experiment_.trials.size())},
+                                     {"seed", std::to_string(experiment_.random->seed)}})}});
+    if (!experiment_.note.empty()) {
+      out_ << fill(words::kNote, {{"note", without_html(experiment_.note)}});
+    }
     write_draws();
     write_survival();
     write_quantiles();
@@ -74,74 +83,95 @@ class MarkdownWriter {
 
  private:
   void write_draws() {
-    out_ << "\n## Drawn for each trial\n\n| parameter | rows | values |\n|---|---|---|\n";
-    const auto write = [&](const std::vector<ExperimentDraw>& draws, const std::string& rows) {
+    std::string list;
+    const auto add = [&](const std::vector<ExperimentDraw>& draws, const std::string& rows) {
       for (const ExperimentDraw& draw : draws) {
-        out_ << "| " << draw.key << " | " << rows << " | " << draw.to_string() << " |\n";
+        list += fill(text::kDraw, {{"key", markdown(draw.key)},
+                                   {"rows", markdown(rows)},
+                                   {"values", markdown(draw.to_string())}});
       }
     };
-    write(experiment_.random->draws, "all");
-    for (const ExperimentRow& row : experiment_.rows) write(row.draws, row.label);
-    out_ << "| run.seed | all | of noise, biases and terrain |\n";
+    add(experiment_.random->draws, text::kAll);
+    for (const ExperimentRow& row : experiment_.rows) add(row.draws, row.label);
+    out_ << fill(text::kDrawn, {{"draws", list}});
   }
 
   void write_survival() {
-    out_ << "\n## Survival\n\n| row | trials | falls | survived | 95 % interval (Wilson) |\n"
-         << "|---|---|---|---|---|\n";
+    out_ << text::kSurvival;
     for (const SurvivalGroup& group : report_.groups) {
       const std::size_t stood = group.trials - group.falls;
       const auto interval = wilson_interval(stood, group.trials);
       if (!interval) continue;
-      out_ << "| " << group.label << " | " << group.trials << " | " << group.falls << " | "
-           << percent(static_cast<double>(stood) / static_cast<double>(group.trials)) << " | "
-           << percent(interval->low) << " to " << percent(interval->high) << " |\n";
+      const double share = static_cast<double>(stood) / static_cast<double>(group.trials);
+      out_ << fill(text::kGroup, {{"row", markdown(group.label)},
+                                  {"trials", std::to_string(group.trials)},
+                                  {"falls", std::to_string(group.falls)},
+                                  {"survived", percent(share)},
+                                  {"low", percent(interval->low)},
+                                  {"high", percent(interval->high)}});
     }
     const SurvivalGroup& all = report_.groups.front();
-    if (all.falls > 0) {
-      const Number latest = quantile(all.stand_down_delays, 1.0);
-      out_ << "\nOf " << all.falls << " falls " << all.stand_down_delays.size()
-           << " ended in the controller's stand-down"
-           << (latest ? ", at most " + short_number(*latest) + " s after the fall" : "") << ".\n";
-    }
+    if (all.falls > 0) write_stand_downs(all);
     if (const auto& allowed = experiment_.random->max_falls) {
       const bool holds = all.falls <= static_cast<std::size_t>(*allowed);
-      out_ << "\nAllowed are " << *allowed << " falls: " << (holds ? "holds" : "**missed**")
-           << ".\n";
+      out_ << fill(text::kAllowed, {{"falls", std::to_string(*allowed)},
+                                    {"verdict", holds ? words::kHolds : text::kMissed}});
     }
+  }
+
+  void write_stand_downs(const SurvivalGroup& all) {
+    const Number latest = quantile(all.stand_down_delays, 1.0);
+    out_ << fill(
+        text::kStoodDown,
+        {{"falls", std::to_string(all.falls)},
+         {"stood_down", std::to_string(all.stand_down_delays.size())},
+         {"latest", latest ? fill(text::kLatest, {{"delay", short_number(*latest)}}) : ""}});
   }
 
   void write_quantiles() {
-    out_ << "\n## Quantiles over the trials without a fall\n\n| quantity | row |";
+    std::string shares;
     for (const double share : kShares) {
-      out_ << (share == 1.0 ? " largest |" : " " + short_number(kPercent * share) + " % |");
+      shares += share == 1.0 ? text::kLargest
+                             : fill(text::kShare, {{"percent", short_number(kPercent * share)}});
     }
-    out_ << "\n|---|---|---|---|---|---|---|\n";
+    out_ << fill(text::kQuantiles, {{"shares", shares}});
     for (const ExperimentColumn& column : report_.columns) {
-      for (const SurvivalGroup& group : report_.groups) {
-        out_ << "| " << column.title << " | " << group.label << " |";
-        for (const double share : kShares) {
-          const Number value = quantile(samples_of(group, column.metric), share);
-          out_ << " " << (value ? short_number(*value) : "-") << " |";
-        }
-        out_ << "\n";
-      }
+      for (const SurvivalGroup& group : report_.groups) write_quantities(column, group);
     }
   }
 
+  void write_quantities(const ExperimentColumn& column, const SurvivalGroup& group) {
+    std::string values;
+    for (const double share : kShares) {
+      const Number value = quantile(samples_of(group, column.metric), share);
+      values += fill(text::kQuantile, {{"value", value ? short_number(*value) : text::kAbsent}});
+    }
+    out_ << fill(
+        text::kQuantity,
+        {{"quantity", markdown(column.title)}, {"row", markdown(group.label)}, {"values", values}});
+  }
+
   void write_worst() {
-    const ExperimentColumn& first = report_.columns.front();
-    out_ << "\n## The worst trials, and how to repeat them\n\n"
-         << "Falls first, the earliest before the others, then by " << first.title << ".\n";
+    const std::string quantity = markdown(report_.columns.front().title);
+    out_ << fill(text::kWorst, {{"quantity", quantity}});
     for (const std::size_t i : report_.worst) {
       const ExperimentTrial& trial = experiment_.trials[i];
-      const MetricValues& values = report_.result->values[i];
-      const Number fall_time = metric(values, kFallTime), size = metric(values, first.metric);
-      out_ << "\nTrial " << i << ", " << experiment_.rows[trial.row].label << ", seed "
-           << trial.seed << ": "
-           << (fell(values) ? "fell after " + short_number(fall_time.value_or(0.0)) + " s"
-                            : first.title + " " + (size ? short_number(*size) : "-"))
-           << "\n\n    " << repeat_command(trial.config) << "\n";
+      out_ << fill(text::kTrial, {{"number", std::to_string(i)},
+                                  {"row", markdown(experiment_.rows[trial.row].label)},
+                                  {"seed", std::to_string(trial.seed)},
+                                  {"outcome", outcome(report_.result->values[i], quantity)},
+                                  {"command", repeat_command(trial.config)}});
     }
+  }
+
+  std::string outcome(const MetricValues& values, const std::string& quantity) const {
+    if (fell(values)) {
+      const double time = metric(values, kFallTime).value_or(0.0);
+      return fill(text::kFell, {{"time", short_number(time)}});
+    }
+    const Number size = metric(values, report_.columns.front().metric);
+    return fill(text::kSizeOfTrial,
+                {{"quantity", quantity}, {"value", size ? short_number(*size) : text::kAbsent}});
   }
 
   const SurvivalReport& report_;
@@ -176,7 +206,7 @@ SurvivalReport::SurvivalReport(const Experiment& of, const SweepResult& with)
     columns = {{"com.distance_to_point_mean_mm", "mean distance to the point, mm"},
                {"com.radius_mean_mm", "mean radius, mm"}};
   }
-  groups.push_back({.label = "all"});
+  groups.push_back({.label = text::kAll});
   if (of.rows.size() > 1) {
     for (const ExperimentRow& row : of.rows) groups.push_back({.label = row.label});
   }
@@ -228,12 +258,13 @@ std::vector<std::string> SurvivalReport::missed_bounds() const {
   const auto& allowed = experiment->random->max_falls;
   const SurvivalGroup& all = groups.front();
   if (allowed && all.falls > static_cast<std::size_t>(*allowed)) {
-    missed.push_back(std::to_string(all.falls) + " of " + std::to_string(all.trials) +
-                     " trials fell; allowed: " + std::to_string(*allowed));
+    missed.push_back(fill(text::kTooManyFell, {{"falls", std::to_string(all.falls)},
+                                               {"trials", std::to_string(all.trials)},
+                                               {"allowed", std::to_string(*allowed)}}));
   }
   if (const std::size_t rest = all.falls - all.stand_down_delays.size(); rest > 0) {
-    missed.push_back(std::to_string(rest) + " of " + std::to_string(all.falls) +
-                     " falls did not end in the stand-down");
+    missed.push_back(fill(text::kNotStoodDown,
+                          {{"rest", std::to_string(rest)}, {"falls", std::to_string(all.falls)}}));
   }
   return missed;
 }

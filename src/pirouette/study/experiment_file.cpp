@@ -11,6 +11,8 @@
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
 #include "pirouette/study/experiment_reader.hpp"
+#include "pirouette/study/plain_text.hpp"
+#include "pirouette/study/table_reader.hpp"
 
 namespace pirouette {
 namespace {
@@ -237,6 +239,13 @@ Result<Experiment> load_experiment(const fs::path& file, const ExperimentChanges
   Errors errors;
   const std::optional<toml::table> table = parse_toml_file(file, errors);
   if (!table) return errors;
+  if (!is_utf8(file.stem().string()) || has_control_character(file.stem().string())) {
+    return Error{visible(file.string()), 0, "",
+                 "names the experiment, for tables and messages; allowed: a file name in UTF-8 "
+                 "without control characters"};
+  }
+  errors = check_texts(*table, file.string(), "note");
+  if (!errors.empty()) return errors;
   Experiment experiment;
   experiment.file = file;
   experiment.name = file.stem().string();

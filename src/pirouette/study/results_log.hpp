@@ -4,11 +4,12 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/metrics/metric_values.hpp"
+#include "pirouette/study/results_line.hpp"
 
 namespace pirouette {
 
@@ -27,12 +28,22 @@ struct Shard {
 /// the folder may lie on a network file system.
 std::string results_file(const std::optional<Shard>& shard);
 
-/// Results by trial_key().
+/// Lines of a file by their numbers, from 1 on.
+using NumberedLines = std::map<int, std::string>;
+
 class ResultsLog {
  public:
+  /// Where a result stands.
+  struct Entry {
+    ResultsLine line;
+    std::filesystem::path file;
+    int number = 0;  ///< of the line, from 1 on
+  };
+
   /// Reads all results of `folder` and opens the file of `shard` for appending; `fresh`, without a
-  /// shard, deletes them all. An error while another process writes the same file or, with
-  /// `fresh`, any of them.
+  /// shard, deletes them all. Lines that are rejected() are taken out of every file to which no
+  /// other process writes. Fails while another process writes the same file, or, with `fresh`, any
+  /// of them.
   static Result<ResultsLog> open(const std::filesystem::path& folder,
                                  const std::optional<Shard>& shard, bool fresh);
   /// Reads all results of `folder` and changes nothing. append() is not allowed.
@@ -44,18 +55,31 @@ class ResultsLog {
 
   /// Result of the trial `key`; nullptr: not finished.
   const MetricValues* find(const std::string& key) const;
-  /// Appends a result in one write: a process that is killed leaves the whole line or a part of it
-  /// at the end, which open() removes. Returns the error when it cannot be written; absent: done.
-  std::optional<Error> append(const std::string& key, const MetricValues& values);
+  /// By trial_key().
+  const std::map<std::string, Entry>& entries() const { return entries_; }
+  /// Lines that were no result, with file, line and why; they are not among the entries. Of two
+  /// lines with different values for one trial neither is.
+  const Errors& rejected() const { return rejected_; }
+
+  /// In one write: a process that is killed leaves the whole line or a part of it at the end, which
+  /// open() rejects.
+  std::optional<Error> append(ResultsLine line);
 
  private:
   ResultsLog() = default;
 
   void read_lines(const std::filesystem::path& path);
+  void add(ResultsLine line, const std::filesystem::path& path, int number);
+  void reject(const std::filesystem::path& path, int number, const std::string& text, Error why);
+  void reject_contradiction(const ResultsLine& line, const std::filesystem::path& path, int number);
+  std::optional<Error> remove_rejected();
 
   std::filesystem::path path_;
   int file_ = -1;
-  std::map<std::string, MetricValues> finished_;
+  std::map<std::string, Entry> entries_;
+  std::set<std::string> contradicted_;  ///< keys of trials with lines that differ
+  Errors rejected_;
+  std::map<std::filesystem::path, NumberedLines> rejected_lines_;
 };
 
 /// Numbers N of the shards i/N that have written to `folder`, ascending.

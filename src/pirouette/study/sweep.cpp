@@ -8,6 +8,7 @@
 #include <set>
 #include <sstream>
 #include <thread>
+#include <tuple>
 
 #include "pirouette/base/fingerprint.hpp"
 #include "pirouette/base/stopwatch.hpp"
@@ -47,6 +48,7 @@ void remove_parts(const fs::path& folder, const std::optional<Shard>& shard) {
 /// A trial, for all trials of the experiment that are equal to it.
 struct Job {
   std::string key;
+  std::string row;  ///< label of the first one's
   const Config* config = nullptr;
   bool keep_trace = false;
 };
@@ -58,7 +60,9 @@ std::vector<Job> distinct_jobs(const Experiment& experiment, std::vector<std::st
   for (const ExperimentTrial& trial : experiment.trials) {
     keys.push_back(trial_key(trial.config));
     const auto [place, is_new] = places.try_emplace(keys.back(), jobs.size());
-    if (is_new) jobs.push_back({keys.back(), &trial.config, false});
+    if (is_new) {
+      jobs.push_back({keys.back(), experiment.rows[trial.row].label, &trial.config, false});
+    }
     Job& job = jobs[place->second];
     job.keep_trace = job.keep_trace || trial.keep_trace;
   }
@@ -71,6 +75,72 @@ std::vector<Job> part_of(const std::vector<Job>& jobs, const Shard& shard) {
     if (shard.holds(i)) part.push_back(jobs[i]);
   }
   return part;
+}
+
+/// The name, not ours nor in `beside`, of an experiment with results in `log`; empty: there is
+/// none.
+std::string other_experiment(const ResultsLog& log, const std::string& ours,
+                             const std::vector<std::string>& beside) {
+  for (const auto& [key, entry] : log.entries()) {
+    const std::string& name = entry.line.experiment;
+    if (name != ours && std::find(beside.begin(), beside.end(), name) == beside.end()) return name;
+  }
+  return "";
+}
+
+/// Whether all results in `log` are of an experiment of the same name that has neither trials nor
+/// rows in common with this one.
+bool holds_a_namesake(const ResultsLog& log, const Experiment& experiment,
+                      const std::set<std::string>& keys) {
+  const auto is_ours = [&](const auto& entry) {
+    const ResultsLine& line = entry.second.line;
+    return keys.contains(entry.first) ||
+           std::any_of(experiment.rows.begin(), experiment.rows.end(),
+                       [&](const ExperimentRow& row) { return row.label == line.row; });
+  };
+  return !log.entries().empty() &&
+         std::none_of(log.entries().begin(), log.entries().end(), is_ours);
+}
+
+/// Refuses a folder with the results of another experiment.
+std::optional<Error> check_folder(const Experiment& experiment,
+                                  const std::vector<std::string>& keys, const ResultsLog& log,
+                                  const SweepOptions& options) {
+  std::string other = other_experiment(log, experiment.name, options.beside);
+  const bool namesake = other.empty() && options.beside.empty() && !options.fresh &&
+                        holds_a_namesake(log, experiment, {keys.begin(), keys.end()});
+  if (namesake) other = experiment.name;
+  if (other.empty()) return std::nullopt;
+  return Error{options.folder.string(), 0, "",
+               "holds results of " + std::string(namesake ? "a different" : "the") +
+                   " experiment " + in_quotes(other) + "; allowed for " +
+                   in_quotes(experiment.name) + ": a folder of its own, by --out" +
+                   (namesake ? ", or --fresh to replace them" : "")};
+}
+
+/// What of `log` is not used.
+Errors unused_lines(const ResultsLog& log, const std::vector<std::string>& keys,
+                    const SweepOptions& options) {
+  Errors unused = log.rejected();
+  const std::set<std::string> ours(keys.begin(), keys.end());
+  for (const auto& [key, entry] : log.entries()) {
+    if (!options.beside.empty() || ours.contains(key)) continue;
+    unused.push_back({entry.file.string(), entry.number, "",
+                      "is of no trial of this experiment: of other options, of the file before it "
+                      "was edited or of another version (row " +
+                          in_quotes(entry.line.row) + ")"});
+  }
+  std::sort(unused.begin(), unused.end(), [](const Error& a, const Error& b) {
+    return std::tie(a.file, a.line) < std::tie(b.file, b.line);
+  });
+  return unused;
+}
+
+void tell_unused(const ResultsLog& log, const std::vector<std::string>& keys,
+                 const SweepOptions& options) {
+  if (!options.unused_lines) return;
+  const Errors unused = unused_lines(log, keys, options);
+  if (!unused.empty()) options.unused_lines(unused);
 }
 
 bool is_finished(const Job& job, const ResultsLog& log, const fs::path& folder) {
@@ -103,8 +173,13 @@ std::string unfinished_shards(const fs::path& folder, const std::vector<std::siz
 
 class Pool {
  public:
-  Pool(std::vector<Job> jobs, std::size_t total, const SweepOptions& options, ResultsLog& log)
-      : jobs_(std::move(jobs)), total_(total), options_(options), log_(log) {}
+  Pool(std::string experiment, std::vector<Job> jobs, std::size_t total,
+       const SweepOptions& options, ResultsLog& log)
+      : experiment_(std::move(experiment)),
+        jobs_(std::move(jobs)),
+        total_(total),
+        options_(options),
+        log_(log) {}
 
   /// Whether every job has run.
   bool complete() const { return done_ == jobs_.size(); }
@@ -132,7 +207,7 @@ class Pool {
         failed_ = true;
         errors_.insert(errors_.end(), values.errors().begin(), values.errors().end());
       } else if (!values.value().empty()) {
-        finish(jobs_[i].key, values.value());
+        finish(jobs_[i], std::move(values).value());
       }
     }
   }
@@ -163,8 +238,8 @@ class Pool {
     return metric_values(result.value().metrics);
   }
 
-  void finish(const std::string& key, const MetricValues& values) {
-    if (const auto error = log_.append(key, values)) {
+  void finish(const Job& job, MetricValues values) {
+    if (const auto error = log_.append({experiment_, job.row, job.key, std::move(values)})) {
       failed_ = true;
       errors_.push_back(*error);
       return;
@@ -187,6 +262,7 @@ class Pool {
     options_.progress(progress);
   }
 
+  const std::string experiment_;
   const std::vector<Job> jobs_;
   const std::size_t total_;  ///< with those that were finished before
   const SweepOptions& options_;
@@ -260,6 +336,12 @@ Errors check_sweep(const Experiment& experiment) {
 Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& options) {
   Errors errors = check_sweep(experiment);
   if (!errors.empty()) return errors;
+  SweepResult result;
+  std::vector<Job> jobs = distinct_jobs(experiment, result.keys);
+  if (const auto other =
+          check_folder(experiment, result.keys, ResultsLog::read(options.folder), options)) {
+    return *other;
+  }
   std::error_code error;
   fs::create_directories(options.folder / kTracesFolder, error);
   if (error) return Error{options.folder.string(), 0, "", "cannot be created: " + error.message()};
@@ -267,13 +349,12 @@ Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& 
   if (!opened) return opened.errors();
   ResultsLog& log = opened.value();
   remove_parts(options.folder, options.shard);
+  tell_unused(log, result.keys, options);
 
-  SweepResult result;
-  std::vector<Job> jobs = distinct_jobs(experiment, result.keys);
   if (options.shard) jobs = part_of(jobs, *options.shard);
   const std::size_t total = jobs.size();
   std::erase_if(jobs, [&](const Job& job) { return is_finished(job, log, options.folder); });
-  Pool pool(std::move(jobs), total, options, log);
+  Pool pool(experiment.name, std::move(jobs), total, options, log);
   errors = pool.run();
   if (!errors.empty()) return errors;
   result.interrupted = !pool.complete();
@@ -281,32 +362,39 @@ Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& 
   return result;
 }
 
-SweepProgress survey_sweep(const Experiment& experiment, const fs::path& folder) {
-  const ResultsLog log = ResultsLog::read(folder);
+Result<SweepProgress> survey_sweep(const Experiment& experiment, const SweepOptions& options) {
   std::vector<std::string> keys;
+  const std::vector<Job> jobs = distinct_jobs(experiment, keys);
+  const ResultsLog log = ResultsLog::read(options.folder);
+  if (const auto other = check_folder(experiment, keys, log, options)) return *other;
+  tell_unused(log, keys, options);
   SweepProgress progress;
-  for (const Job& job : distinct_jobs(experiment, keys)) {
-    ++progress.total;
-    progress.done += is_finished(job, log, folder) ? 1 : 0;
-  }
+  progress.total = jobs.size();
+  progress.done =
+      static_cast<std::size_t>(std::count_if(jobs.begin(), jobs.end(), [&](const Job& job) {
+        return is_finished(job, log, options.folder);
+      }));
   progress.resumed = progress.done;
   return progress;
 }
 
-Result<SweepResult> merge_sweep(const Experiment& experiment, const fs::path& folder) {
+Result<SweepResult> merge_sweep(const Experiment& experiment, const SweepOptions& options) {
   const Errors errors = check_sweep(experiment);
   if (!errors.empty()) return errors;
-  const ResultsLog log = ResultsLog::read(folder);
   SweepResult result;
   const std::vector<Job> jobs = distinct_jobs(experiment, result.keys);
+  const ResultsLog log = ResultsLog::read(options.folder);
+  if (const auto other = check_folder(experiment, result.keys, log, options)) return *other;
+  tell_unused(log, result.keys, options);
   std::vector<std::size_t> missing;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
-    if (!is_finished(jobs[i], log, folder)) missing.push_back(i);
+    if (!is_finished(jobs[i], log, options.folder)) missing.push_back(i);
   }
   if (!missing.empty()) {
-    return Error{folder.string(), 0, "",
+    return Error{options.folder.string(), 0, "",
                  "no results of " + std::to_string(missing.size()) + " of " +
-                     std::to_string(jobs.size()) + " trials" + unfinished_shards(folder, missing)};
+                     std::to_string(jobs.size()) + " trials" +
+                     unfinished_shards(options.folder, missing)};
   }
   add_values(log, result);
   return result;

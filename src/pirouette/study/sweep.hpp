@@ -31,13 +31,18 @@ struct SweepProgress {
 
 /// How to run a sweep.
 struct SweepOptions {
-  unsigned jobs = 0;  ///< threads; 0: one for each hardware thread
-  /// Folder of the results and of kTracesFolder; experiments in one folder share their trials.
-  std::filesystem::path folder;
+  unsigned jobs = 0;             ///< threads; 0: one for each hardware thread
+  std::filesystem::path folder;  ///< where the results and kTracesFolder are
+  /// Names of other experiments whose results may be in `folder`: they then share trials. Results
+  /// of any other are refused.
+  std::vector<std::string> beside;
   std::optional<Shard> shard;                          ///< absent: all trials
   bool fresh = false;                                  ///< delete earlier results; not for a shard
   std::function<void(const SweepProgress&)> progress;  ///< one call at a time; may be empty
-  std::function<bool()> stop;  ///< called from all threads; true ends the sweep; may be empty
+  /// Told once, before anything runs, which lines of results are not used, and why: damaged, edited
+  /// or old ones, and, without `beside`, those of no trial of the experiment. May be empty.
+  std::function<void(const Errors&)> unused_lines;
+  std::function<bool()> stop;  ///< asked from all threads; true ends the sweep; may be empty
 };
 
 /// Results of the trials of an experiment.
@@ -51,17 +56,18 @@ struct SweepResult {
 /// Empty: none.
 Errors check_sweep(const Experiment& experiment);
 
-/// Runs the trials without a result in the folder, appending each trial as it finishes. The result
-/// does not depend on `jobs`, nor on how often the sweep was interrupted, nor on how it was
-/// sharded.
+/// Runs what `folder` does not hold yet, appending each trial as it finishes. Refused, before
+/// anything runs, when `folder` holds results of an experiment other than this one and those of
+/// `beside`. The result does not depend on `jobs`, nor on how often the sweep was interrupted, nor
+/// on how it was sharded.
 Result<SweepResult> run_sweep(const Experiment& experiment, const SweepOptions& options);
 
-/// Number of trials of the experiment, and of those with a result in `folder`.
-SweepProgress survey_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+/// How much of the experiment `options.folder` holds. Uses folder, beside and unused_lines.
+Result<SweepProgress> survey_sweep(const Experiment& experiment, const SweepOptions& options);
 
-/// The results in `folder`, without running anything. The error when trials are missing says how
-/// many, and of which shards.
-Result<SweepResult> merge_sweep(const Experiment& experiment, const std::filesystem::path& folder);
+/// The result from what `options.folder` holds, without running anything; the error when trials are
+/// missing says how many, and of which shards. Uses folder, beside and unused_lines.
+Result<SweepResult> merge_sweep(const Experiment& experiment, const SweepOptions& options);
 
 /// Path of the trace of a trial with keep_trace.
 std::filesystem::path trace_path(const std::filesystem::path& folder, const std::string& key);

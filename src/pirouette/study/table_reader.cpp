@@ -4,11 +4,13 @@
 #include <cmath>
 
 #include "pirouette/config/suggest.hpp"
+#include "pirouette/study/plain_text.hpp"
 
 namespace pirouette {
 namespace {
 
 constexpr const char* kText = "a text in quotes";
+constexpr std::string_view kLayout = "\n\t\r";
 
 void flatten(const toml::table& table, const std::string& prefix, Lists lists,
              std::vector<ExperimentSetting>& out) {
@@ -25,7 +27,35 @@ void flatten(const toml::table& table, const std::string& prefix, Lists lists,
   }
 }
 
+void check_text(const toml::node& node, const std::string& key, const std::string& free,
+                const TableReader& reader) {
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [name, below] : *table) {
+      const std::string path = (key.empty() ? "" : key + ".") + visible(name.str());
+      if (has_control_character(name.str())) {
+        reader.report(below, path, "a key; allowed: one without control characters");
+      }
+      check_text(below, path, free, reader);
+    }
+  } else if (const toml::array* list = node.as_array()) {
+    for (const toml::node& element : *list) check_text(element, key, free, reader);
+  } else if (const auto* text = node.as_string()) {
+    const bool is_free = key == free;
+    if (!has_control_character(text->get(), is_free ? kLayout : "")) return;
+    reader.report(node, key,
+                  "given " + in_quotes(visible(text->get())) +
+                      "; allowed: a text without control characters" +
+                      (is_free ? " other than line breaks and tabs" : ", on one line"));
+  }
+}
+
 }  // namespace
+
+Errors check_texts(const toml::table& table, const std::string& file, const std::string& free) {
+  Errors errors;
+  check_text(table, "", free, TableReader(file, errors));
+  return errors;
+}
 
 int line_of(const toml::node& node) { return static_cast<int>(node.source().begin.line); }
 

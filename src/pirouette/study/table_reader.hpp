@@ -18,6 +18,10 @@ enum class Lists { kValues, kAlternatives };
 
 int line_of(const toml::node& node);
 
+/// An error for every text below `table`, and every key, that holds a control character: reports
+/// are tables of one line each, and go to terminals. The text `free` may have line breaks and tabs.
+Errors check_texts(const toml::table& table, const std::string& file, const std::string& free);
+
 /// Keys in errors are `prefix` and the name in the table.
 class TableReader {
  public:
