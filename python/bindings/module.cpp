@@ -13,7 +13,7 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/toml.hpp"
-#include "pirouette/metrics/metrics.hpp"
+#include "pirouette/metrics/motion_metrics.hpp"
 #include "pirouette/study/configured_trial.hpp"
 
 namespace pirouette::python {
@@ -76,40 +76,35 @@ std::string run(const Config& config, const std::string& trace) {
   return to_json(trial.value().metrics);
 }
 
-/// Copies an array of `n` numbers; None: no list.
-std::vector<double> numbers(const nb::object& given, const char* name, std::size_t n) {
-  if (given.is_none()) return {};
-  const InputArray array = as_array(given, name, {n});
-  return {array.data(), array.data() + n};
-}
-
-std::vector<Vec2> points(const nb::object& given, const char* name, std::size_t n) {
-  const InputArray array = as_array(given, name, {n, 2});
-  std::vector<Vec2> out;
-  out.reserve(n);
-  for (std::size_t i = 0; i < n; ++i)
-    out.emplace_back(array.data()[2 * i], array.data()[2 * i + 1]);
-  return out;
-}
-
 /// The text of metrics.json of somebody else's run, sampled at `rate` (Hz).
 std::string metrics(double rate, const nb::object& time, const nb::object& com,
                     const nb::object& com_velocity, const nb::object& yaw, const nb::object& roll,
                     const nb::object& pitch, const nb::object& point, const nb::object& velocity,
                     double yaw_rate) {
   const std::size_t n = nb::len(time);
-  MotionRecord record;
-  record.time = numbers(time, "time", n);
-  record.p_WG = points(com, "com", n);
-  record.v_WG_W = points(com_velocity, "com_velocity", n);
-  record.yaw = numbers(yaw, "yaw", n);
-  record.roll = numbers(roll, "roll", n);
-  record.pitch = numbers(pitch, "pitch", n);
+  const auto list = [n](const nb::object& given, const char* name) {
+    return given.is_none() ? std::optional<InputArray>{} : as_array(given, name, {n});
+  };
+  const InputArray times = as_array(time, "time", {n}), yaws = as_array(yaw, "yaw", {n});
+  const InputArray places = as_array(com, "com", {n, 2});
+  const InputArray velocities = as_array(com_velocity, "com_velocity", {n, 2});
+  const std::optional<InputArray> rolls = list(roll, "roll"), pitches = list(pitch, "pitch");
   CommandedMotion commanded;
   commanded.point = Eigen::Map<const Vec2>(as_array(point, "point", {2}).data());
   commanded.v_H = Eigen::Map<const Vec2>(as_array(velocity, "velocity", {2}).data());
   commanded.yaw_rate = yaw_rate;
-  return to_json(evaluate(record, commanded, rate));
+  MotionMetrics metrics(commanded, rate);
+  for (std::size_t i = 0; i < n; ++i) {
+    MotionSample sample;
+    sample.time = times.data()[i];
+    sample.p_WG = Eigen::Map<const Vec2>(places.data() + 2 * i);
+    sample.v_WG_W = Eigen::Map<const Vec2>(velocities.data() + 2 * i);
+    sample.yaw = yaws.data()[i];
+    if (rolls) sample.roll = rolls->data()[i];
+    if (pitches) sample.pitch = pitches->data()[i];
+    metrics.add(sample);
+  }
+  return to_json(metrics.result());
 }
 
 }  // namespace

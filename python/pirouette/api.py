@@ -116,7 +116,7 @@ def metrics(
         yaw_rate,
     )
     known = _drop_absent(json.loads(text))
-    for key in ("context", "timing", "fell"):  # of a run of ours
+    for key in ("context", "timing", "fell", "interrupted"):  # of a run of ours
         known.pop(key, None)
     return known
 

@@ -1,5 +1,3 @@
-#include "pirouette/metrics/metrics.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,47 +5,24 @@
 #include <nlohmann/json.hpp>
 
 #include "pirouette/base/rotation.hpp"
+#include "pirouette/metrics/motion_metrics.hpp"
+#include "support/synthetic_motion.hpp"
 
 namespace pirouette {
 namespace {
 
-constexpr double kRate = 500.0;     // Hz
-constexpr double kYawRate = 0.7;    // rad/s
-constexpr double kSampling = 0.01;  // mm or mm/s: a whole number of samples is not quite a turn
+using test::kRate;
+using test::kYawRate;
+using test::measure;
+using test::Motion;
+using test::synthetic_spin;
 
-/// A spin about `centre` whose CoM has the body-fixed velocity `bias` (m/s) and drifts by `drift`
-/// (m per turn) along x: a circle of radius |bias| / yaw rate. `roll_amplitude` (rad) swings at 2
-/// Hz.
-MotionRecord synthetic_spin(double turns, const Vec2& centre, const Vec2& bias, double drift,
-                            double yaw_rate = kYawRate, double roll_amplitude = 0.0) {
-  constexpr double kRollFrequency = 2.0 * 2.0 * kPi;  // rad/s
-  MotionRecord record;
-  const auto count = static_cast<int>(std::lround(turns * 2.0 * kPi / std::abs(yaw_rate) * kRate));
-  const Vec2 arm = Vec2(bias.y(), -bias.x()) / yaw_rate;
-  const Vec2 drift_velocity = Vec2(drift, 0.0) * std::abs(yaw_rate) / (2.0 * kPi);
-  for (int i = 0; i <= count; ++i) {
-    const double t = i / kRate;
-    const double yaw = 3.0 + yaw_rate * t;  // passes +-pi at once
-    PlantTruth truth;
-    truth.time = 6.0 + t;
-    truth.p_WG.head<2>() = centre + rot2(yaw) * arm + drift_velocity * t;
-    truth.v_WG_W.head<2>() = rot2(yaw) * bias + drift_velocity;
-    const double roll = roll_amplitude * std::sin(kRollFrequency * t);
-    truth.base.R_WB = rotation_from_rpy({roll, -0.01, yaw});
-    truth.base.w_WB_B.x() = roll_amplitude * kRollFrequency * std::cos(kRollFrequency * t);
-    truth.a_WB_W = Vec3(0.3 * std::sin(kRollFrequency * t), 0.0, 0.0);
-    RobotState estimate;
-    estimate.p_WB = truth.base.p_WB + Vec3(0.003, 0.004, 0.5);
-    estimate.rpy.yaw = yaw - 4.0 * kPi + 0.02;  // another branch
-    record.add(truth, yaw, estimate, 0.0);
-  }
-  return record;
-}
+constexpr double kSampling = 0.01;  // mm or mm/s: a whole number of samples is not quite a turn
 
 TEST(Metrics, ACleanSpinOnThePointIsCleanInEveryNumber) {
   const Vec2 point(0.3, -0.2);
-  const Metrics m = evaluate(synthetic_spin(8.0, point, Vec2::Zero(), 0.0),
-                             {point, Vec2::Zero(), kYawRate}, kRate);
+  const Metrics m = measure(synthetic_spin(8.0, point, Vec2::Zero(), 0.0),
+                            {point, Vec2::Zero(), kYawRate}, kRate);
   EXPECT_NEAR(m.turns_done, 8.0, 1e-3);
   EXPECT_NEAR(*m.yaw_rate_mean, kYawRate, 1e-9);
   EXPECT_NEAR(*m.yaw_rate_error, 0.0, 1e-9);
@@ -62,8 +37,8 @@ TEST(Metrics, ABodyFixedBiasDrawsACircleOfItsSizeOverTheYawRate) {
   const Vec2 point(0.1, 0.0);
   const Vec2 bias(0.012, -0.005);
   for (const double yaw_rate : {kYawRate, -kYawRate}) {
-    const Metrics m = evaluate(synthetic_spin(8.0, point, bias, 0.0, yaw_rate),
-                               {point, Vec2::Zero(), yaw_rate}, kRate);
+    const Metrics m = measure(synthetic_spin(8.0, point, bias, 0.0, yaw_rate),
+                              {point, Vec2::Zero(), yaw_rate}, kRate);
     const double radius = bias.norm() / kYawRate * 1e3;
     EXPECT_NEAR(m.turns_done, 8.0, 1e-3);
     EXPECT_NEAR(*m.yaw_rate_error, 0.0, 1e-9);
@@ -83,8 +58,8 @@ TEST(Metrics, ABodyFixedBiasDrawsACircleOfItsSizeOverTheYawRate) {
 }
 
 TEST(Metrics, RadiusIsAboutTheMeanPointAndDistanceAboutTheCommandedOne) {
-  const Metrics m = evaluate(synthetic_spin(8.0, Vec2(0.03, 0.04), Vec2(0.0007, 0.0), 0.0),
-                             {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+  const Metrics m = measure(synthetic_spin(8.0, Vec2(0.03, 0.04), Vec2(0.0007, 0.0), 0.0),
+                            {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
   EXPECT_NEAR(*m.com.radius_mean_mm, 1.0, kSampling);
   EXPECT_NEAR(*m.com.distance_to_point_mean_mm, 50.0, 0.02);
   EXPECT_NEAR(*m.com.circle_centre_x_mm, 30.0, 1e-6);
@@ -93,8 +68,8 @@ TEST(Metrics, RadiusIsAboutTheMeanPointAndDistanceAboutTheCommandedOne) {
 
 TEST(Metrics, DriftIsTheSameWhateverTheNumberOfTurns) {
   for (const double turns : {2.1, 3.0, 8.0}) {
-    const Metrics m = evaluate(synthetic_spin(turns, Vec2::Zero(), Vec2(0.01, 0.0), 0.005),
-                               {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+    const Metrics m = measure(synthetic_spin(turns, Vec2::Zero(), Vec2(0.01, 0.0), 0.005),
+                              {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
     EXPECT_NEAR(*m.com.drift_per_turn_mm, 5.0, kSampling) << turns << " turns";
   }
 }
@@ -102,31 +77,59 @@ TEST(Metrics, DriftIsTheSameWhateverTheNumberOfTurns) {
 TEST(Metrics, DistanceToTheAverageIsTheRadiusWhereverTheCircleDrifts) {
   const Vec2 bias(0.012, -0.005);
   for (const double yaw_rate : {kYawRate, -kYawRate}) {
-    const Metrics m = evaluate(synthetic_spin(5.0, Vec2(0.3, 0.1), bias, 0.02, yaw_rate),
-                               {Vec2::Zero(), Vec2::Zero(), yaw_rate}, kRate);
+    const Metrics m = measure(synthetic_spin(5.0, Vec2(0.3, 0.1), bias, 0.02, yaw_rate),
+                              {Vec2::Zero(), Vec2::Zero(), yaw_rate}, kRate);
     EXPECT_NEAR(*m.com.distance_to_average_mean_mm, bias.norm() / kYawRate * 1e3, kSampling);
     EXPECT_GT(*m.com.radius_mean_mm, 1.5 * *m.com.distance_to_average_mean_mm);
   }
 }
 
-TEST(Metrics, DistanceToTheAverageIsTakenWhereATurnAboutIsInTheRecord) {
-  const MotionRecord record = synthetic_spin(3.0, Vec2::Zero(), Vec2(0.01, 0.0), 0.0);
-  const std::size_t count = distances_to_turn_average(record.yaw, record.p_WG).size();
-  EXPECT_NEAR(static_cast<double>(count) / static_cast<double>(record.yaw.size()), 2.0 / 3.0, 1e-3);
-  const MotionRecord less = synthetic_spin(0.9, Vec2::Zero(), Vec2(0.01, 0.0), 0.0);
-  EXPECT_TRUE(distances_to_turn_average(less.yaw, less.p_WG).empty());
-  EXPECT_TRUE(distances_to_turn_average({}, {}).empty());
+TEST(Metrics, DistanceToTheAverageNeedsATurn) {
+  const auto distance = [](double turns) {
+    return measure(synthetic_spin(turns, Vec2::Zero(), Vec2(0.01, 0.0), 0.0), {}, kRate)
+        .com.distance_to_average_mean_mm;
+  };
+  EXPECT_FALSE(distance(0.9));
+  EXPECT_TRUE(distance(1.1));
 }
 
 TEST(Metrics, DriftNeedsTwoTurns) {
-  const MotionRecord record = synthetic_spin(1.9, Vec2::Zero(), Vec2::Zero(), 0.005);
-  EXPECT_FALSE(drift_per_turn(record.yaw, record.p_WG));
-  EXPECT_FALSE(drift_per_turn({}, {}));
+  const Metrics m = measure(synthetic_spin(1.9, Vec2::Zero(), Vec2::Zero(), 0.005), {}, kRate);
+  EXPECT_FALSE(m.com.drift_per_turn_mm);
+  EXPECT_FALSE(m.estimator.position_drift_per_turn_mm);
+}
+
+TEST(Metrics, WhatARobotThatHardlyTurnsCannotTellIsAbsent) {
+  const Metrics still = measure(synthetic_spin(0.4, Vec2::Zero(), Vec2(0.01, 0.0), 0.0),
+                                {Vec2::Zero(), Vec2::Zero(), 1e-6}, kRate);
+  EXPECT_FALSE(still.com.bias_circle_mm);
+  EXPECT_FALSE(still.com.circle_radius_mm) << "less than half of the circle";
+  EXPECT_FALSE(still.yaw_rate_error) << "relative to next to nothing";
+  EXPECT_TRUE(still.com.body_bias_mm_s);
+  const Metrics turns = measure(synthetic_spin(0.6, Vec2::Zero(), Vec2(0.01, 0.0), 0.0),
+                                {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+  EXPECT_TRUE(turns.com.bias_circle_mm);
+  EXPECT_TRUE(turns.com.circle_radius_mm);
+  EXPECT_TRUE(turns.yaw_rate_error);
+}
+
+TEST(Metrics, AStraightLineHasNoCircle) {
+  Motion motion;
+  for (int i = 0; i < 5000; ++i) {
+    MotionSample sample;
+    sample.time = i / kRate;
+    sample.p_WG = Vec2(0.2 * sample.time, 1e-3 * std::sin(3.0 * sample.time));
+    motion.push_back(sample);
+  }
+  const Metrics m = measure(motion, {Vec2::Zero(), Vec2(0.2, 0.0)}, kRate);
+  EXPECT_FALSE(m.com.circle_radius_mm);
+  EXPECT_FALSE(m.com.circle_centre_x_mm);
+  EXPECT_TRUE(m.com.radius_mean_mm);
 }
 
 TEST(Metrics, TurningTheWrongWayCountsNegative) {
-  const Metrics m = evaluate(synthetic_spin(3.0, Vec2::Zero(), Vec2::Zero(), 0.0, -kYawRate),
-                             {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+  const Metrics m = measure(synthetic_spin(3.0, Vec2::Zero(), Vec2::Zero(), 0.0, -kYawRate),
+                            {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
   EXPECT_NEAR(m.turns_done, -3.0, 1e-3);
   EXPECT_NEAR(*m.yaw_rate_error, -2.0, 1e-9);
 }
@@ -134,8 +137,8 @@ TEST(Metrics, TurningTheWrongWayCountsNegative) {
 TEST(Metrics, AttitudeAndAccelerationsHaveTheirClosedForms) {
   constexpr double kAmplitude = 0.02;
   const Metrics m =
-      evaluate(synthetic_spin(8.0, Vec2::Zero(), Vec2::Zero(), 0.0, kYawRate, kAmplitude),
-               {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+      measure(synthetic_spin(8.0, Vec2::Zero(), Vec2::Zero(), 0.0, kYawRate, kAmplitude),
+              {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
   constexpr double kFewPermille = 5e-3;  // the record is not a whole number of swings
   EXPECT_NEAR(*m.attitude.roll_variance, square(kAmplitude) / 2.0,
               kFewPermille * square(kAmplitude));
@@ -150,19 +153,19 @@ TEST(Metrics, AttitudeAndAccelerationsHaveTheirClosedForms) {
 }
 
 TEST(Metrics, EstimatorErrorIsHorizontalAndIgnoresTheYawsBranch) {
-  const Metrics m = evaluate(synthetic_spin(1.0, Vec2::Zero(), Vec2::Zero(), 0.0),
-                             {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+  const Metrics m = measure(synthetic_spin(1.0, Vec2::Zero(), Vec2::Zero(), 0.0),
+                            {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
   EXPECT_NEAR(*m.estimator.position_error_mm, 5.0, 1e-9);
   EXPECT_NEAR(*m.estimator.yaw_error_rad, 0.02, 1e-9);
 }
 
 TEST(Metrics, EstimatorDriftIsThatOfItsErrorWhateverTheRobotDoes) {
-  MotionRecord record = synthetic_spin(5.0, Vec2::Zero(), Vec2(0.01, 0.0), 0.02);
-  for (std::size_t i = 0; i < record.yaw.size(); ++i) {
-    const double turns = (record.yaw[i] - record.yaw.front()) / (2.0 * kPi);
-    record.position_error[i] = turns * Vec2(0.003, -0.004) + rot2(record.yaw[i]) * Vec2(0.001, 0.0);
+  Motion record = synthetic_spin(5.0, Vec2::Zero(), Vec2(0.01, 0.0), 0.02);
+  for (MotionSample& sample : record) {
+    const double turns = (sample.yaw - record.front().yaw) / (2.0 * kPi);
+    sample.position_error = turns * Vec2(0.003, -0.004) + rot2(sample.yaw) * Vec2(0.001, 0.0);
   }
-  const Metrics m = evaluate(record, {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
+  const Metrics m = measure(record, {Vec2::Zero(), Vec2::Zero(), kYawRate}, kRate);
   EXPECT_NEAR(*m.estimator.position_drift_per_turn_mm, 5.0, kSampling);
 }
 
@@ -170,14 +173,14 @@ TEST(Metrics, RelativeAttitudeIsConstantForATrunkThatKeepsItsLeanFromASlope) {
   const Vec3 normal(-std::sin(radians(10.0)), 0.0, std::cos(radians(10.0)));
   const Mat3 R_WT = Quat::FromTwoVectors(Vec3::UnitZ(), normal).toRotationMatrix();
   const RollPitchYaw lean{0.02, -0.03, 0.0};
-  MotionRecord record;
+  Motion record;
   for (int i = 0; i < 1000; ++i) {
     PlantTruth truth;
     truth.ground_normal_W = normal;
     truth.base.R_WB = R_WT * rot_z(0.02 * i) * rotation_from_rpy(lean);
-    record.add(truth, 0.02 * i, RobotState{}, 0.0);
+    record.push_back(motion_sample(truth, 0.02 * i, RobotState{}, 0.0));
   }
-  const AttitudeMetrics attitude = evaluate(record, {}, kRate).attitude;
+  const AttitudeMetrics attitude = measure(record, {}, kRate).attitude;
   EXPECT_NEAR(*attitude.relative_roll_mean, lean.roll, 1e-12);
   EXPECT_NEAR(*attitude.relative_pitch_mean, lean.pitch, 1e-12);
   EXPECT_NEAR(*attitude.relative_roll_variance, 0.0, 1e-20);
@@ -187,39 +190,32 @@ TEST(Metrics, RelativeAttitudeIsConstantForATrunkThatKeepsItsLeanFromASlope) {
 
 TEST(Metrics, RelativeAttitudeOnTheFlatIsTheAttitude) {
   const AttitudeMetrics attitude =
-      evaluate(synthetic_spin(2.0, Vec2::Zero(), Vec2::Zero(), 0.0, kYawRate, 0.02), {}, kRate)
+      measure(synthetic_spin(2.0, Vec2::Zero(), Vec2::Zero(), 0.0, kYawRate, 0.02), {}, kRate)
           .attitude;
   EXPECT_NEAR(*attitude.relative_roll_variance, *attitude.roll_variance, 1e-12);
   EXPECT_NEAR(*attitude.relative_pitch_mean, *attitude.pitch_mean, 1e-12);
 }
 
 TEST(Metrics, SlipCountsTheFeetThatTouch) {
-  MotionRecord record;
+  Motion record;
   PlantTruth truth;
   truth.v_slip_W = PerLeg<Vec3>::filled(Vec3(1.0, 0.0, 0.0));  // in the air
-  record.add(truth, 0.0, RobotState{}, 0.0);
-  EXPECT_FALSE(evaluate(record, {}, kRate).contact.slip_mean_mm_s);
+  record.push_back(motion_sample(truth, 0.0, RobotState{}, 0.0));
+  EXPECT_FALSE(measure(record, {}, kRate).contact.slip_mean_mm_s);
   truth.contact[Leg::kFR] = truth.contact[Leg::kRL] = true;
   truth.v_slip_W[Leg::kFR] = Vec3(0.003, 0.004, 0.0);
   truth.v_slip_W[Leg::kRL] = Vec3(0.0, 0.001, 0.0);
-  record.add(truth, 0.0, RobotState{}, 0.0);
-  EXPECT_NEAR(*evaluate(record, {}, kRate).contact.slip_mean_mm_s, 3.0, 1e-12);
+  record.push_back(motion_sample(truth, 0.0, RobotState{}, 0.0));
+  EXPECT_NEAR(*measure(record, {}, kRate).contact.slip_mean_mm_s, 3.0, 1e-12);
 }
 
 TEST(Metrics, ATurnHasACircleButNoDistanceToAPoint) {
   const Vec2 velocity(0.35, 0.0);
-  const Metrics m = evaluate(synthetic_spin(3.0, Vec2::Zero(), velocity, 0.0),
-                             {Vec2::Zero(), velocity, kYawRate}, kRate);
+  const Metrics m = measure(synthetic_spin(3.0, Vec2::Zero(), velocity, 0.0),
+                            {Vec2::Zero(), velocity, kYawRate}, kRate);
   EXPECT_FALSE(m.com.distance_to_point_mean_mm);
   EXPECT_NEAR(*m.com.circle_radius_mm, 500.0, 1e-6);
   EXPECT_NEAR(*m.com.body_bias_mm_s, 0.0, 1e-9);
-}
-
-TEST(PeakToPeak, IsTheMeanOverWholeWindows) {
-  const std::vector<double> x = {0.0, 1.0, 0.0, 3.0, 100.0};
-  EXPECT_DOUBLE_EQ(*peak_to_peak(x, 2), 2.0) << "the last, incomplete window is left out";
-  EXPECT_DOUBLE_EQ(*peak_to_peak(x, 50), 100.0);
-  EXPECT_FALSE(peak_to_peak({}, 2));
 }
 
 TEST(MetricsJson, HasTheAgreedKeysInTheirPlaces) {
@@ -285,7 +281,7 @@ TEST(MetricsJson, HasTheAgreedKeysInTheirPlaces) {
 }
 
 TEST(MetricsJson, WritesNullForWhatHasNoSensibleValue) {
-  Metrics m = evaluate({}, {}, kRate);
+  Metrics m = measure({}, {}, kRate);
   m.attitude.roll_mean = std::numeric_limits<double>::quiet_NaN();
   m.timing.real_time_factor = std::numeric_limits<double>::infinity();
   const auto json = nlohmann::json::parse(to_json(m));
@@ -297,9 +293,9 @@ TEST(MetricsJson, WritesNullForWhatHasNoSensibleValue) {
 }
 
 TEST(MetricsJson, OfOneSampleHasMeansButNoVariances) {
-  MotionRecord record;
-  record.add(PlantTruth{}, 0.0, RobotState{}, 0.0);
-  const auto json = nlohmann::json::parse(to_json(evaluate(record, {}, kRate)));
+  Motion record;
+  record.push_back(motion_sample(PlantTruth{}, 0.0, RobotState{}, 0.0));
+  const auto json = nlohmann::json::parse(to_json(measure(record, {}, kRate)));
   EXPECT_EQ(json.at("com").at("radius_mean_mm"), 0.0);
   EXPECT_TRUE(json.at("com").at("radius_variance_mm2").is_null());
   EXPECT_TRUE(json.at("acceleration").at("x_variance").is_null());
@@ -316,21 +312,21 @@ TEST(Metrics, PathErrorsAreAcrossThePathAndAlongItFromWhereItIsDue) {
   const Vec2 start(0.3, -0.2);
   CommandedMotion commanded{start, Vec2(kSpeed, 0.0), 0.4};
   commanded.path = Path::circle(start, 0.5, 0.5);
-  MotionRecord record;
+  Motion record;
   for (int i = 0; i < 5000; ++i) {
     const double due = kSpeed * i / kRate;
     const PathSample here = commanded.path->at(due - kLate);
     PlantTruth truth;
     truth.time = i / kRate;
     truth.p_WG.head<2>() = here.p + kAside * Vec2(-std::sin(here.heading), std::cos(here.heading));
-    record.add(truth, here.heading, RobotState{}, due);
+    record.push_back(motion_sample(truth, here.heading, RobotState{}, due));
   }
-  const Metrics m = evaluate(record, commanded, kRate);
+  const Metrics m = measure(record, commanded, kRate);
   EXPECT_NEAR(*m.path.cross_track_mean_mm, 1e3 * kAside, 1e-9);
   EXPECT_NEAR(*m.path.cross_track_max_mm, 1e3 * kAside, 1e-9);
   EXPECT_NEAR(*m.path.along_track_mean_mm, 1e3 * kLate, 1e-9);
   commanded.path.reset();
-  EXPECT_FALSE(evaluate(record, commanded, kRate).path.cross_track_mean_mm) << "a spin has no path";
+  EXPECT_FALSE(measure(record, commanded, kRate).path.cross_track_mean_mm) << "a spin has no path";
 }
 
 }  // namespace

@@ -184,6 +184,7 @@ def test_metrics_of_a_trace_are_those_of_its_run():
         run.metrics["attitude"]["roll_mean"], rel=1e-2
     )
     assert "estimator" not in measured
+    assert "interrupted" not in measured
 
 
 def test_metrics_of_a_circle_are_its_own():

@@ -3,60 +3,13 @@
 
 #include <cstdint>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
-
-#include "pirouette/base/math.hpp"
-#include "pirouette/path/path.hpp"
-#include "pirouette/types/plant_truth.hpp"
-#include "pirouette/types/robot_state.hpp"
 
 namespace pirouette {
 
 /// A metric; absent when the run gives no sensible value (too short, too few samples), null in
 /// metrics.json.
 using Number = std::optional<double>;
-
-inline constexpr double kComRate = 100.0;            ///< Hz, of the resampled CoM
-inline constexpr double kAccelerationCutoff = 20.0;  ///< Hz, of the accelerations' low-pass
-inline constexpr double kRecordLength = 10.0;        ///< s, of one peak-to-peak record
-
-/// The commanded motion, in the true world.
-struct CommandedMotion {
-  Vec2 point = Vec2::Zero();  ///< m, commanded point
-  Vec2 v_H = Vec2::Zero();    ///< m/s, heading axes
-  double yaw_rate = 0.0;      ///< rad/s
-  bool hold_heading = false;  ///< the body keeps its heading on the path
-  /// In the world, starting where the command was given; absent: a spin.
-  std::optional<Path> path = {};
-};
-
-/// The recorded part of a run: one entry per control tick in every list but `slip`. A list may be
-/// empty when its values are not known; the metrics that need it are then absent. time, p_WG,
-/// v_WG_W and yaw are always needed.
-struct MotionRecord {
-  std::vector<double> time;            ///< s
-  std::vector<Vec2> p_WG;              ///< m, true CoM
-  std::vector<Vec2> v_WG_W;            ///< m/s, true CoM
-  std::vector<double> roll;            ///< rad, true
-  std::vector<double> pitch;           ///< rad, true
-  std::vector<double> yaw;             ///< rad, true, unwrapped
-  std::vector<Vec2> a_WB_W;            ///< m/s^2, true, trunk origin
-  std::vector<double> roll_rate;       ///< rad/s, true, about the body's x axis
-  std::vector<double> pitch_rate;      ///< rad/s, true, about the body's y axis
-  std::vector<double> relative_roll;   ///< rad, true, from the terrain's overall plane
-  std::vector<double> relative_pitch;  ///< rad, true, from the terrain's overall plane
-  std::vector<Vec2> position_error;    ///< m, estimated less true trunk position
-  std::vector<double> yaw_error;       ///< rad, |estimated - true|
-  std::vector<double> arc_length;      ///< m, of the time-indexed reference along its path
-  std::vector<double> slip;  ///< m/s, speed of the contact's material point; of each foot that
-                             ///< touches, tick by tick
-
-  /// Appends one tick. `yaw` (rad) is the true yaw, unwrapped; `reference_arc_length` in m.
-  void add(const PlantTruth& truth, double yaw, const RobotState& estimate,
-           double reference_arc_length);
-};
 
 /// Metrics `com.*`.
 struct ComMetrics {
@@ -148,32 +101,6 @@ struct Metrics {
   static void fields(Self& m, Visit&& v);
 };
 
-/// The motion's part of the metrics, of `record` sampled at `rate` (Hz). Lengths are horizontal.
-Metrics evaluate(const MotionRecord& record, const CommandedMotion& commanded, double rate);
-
-/// Mean of max - min over consecutive whole windows of `length` samples; over all samples when
-/// there are fewer.
-Number peak_to_peak(std::span<const double> x, std::size_t length);
-
-/// Drift (m per turn): from the mean point of the first turn to that of the last one, divided by
-/// the turns between their middles. `yaw` is unwrapped. Absent for less than two turns.
-Number drift_per_turn(std::span<const double> yaw, std::span<const Vec2> p_WG);
-
-/// Distance (m) from each point to the mean of the points from half a turn before it to half a turn
-/// after, where both are in the record. `yaw` is unwrapped.
-std::vector<double> distances_to_turn_average(std::span<const double> yaw,
-                                              std::span<const Vec2> p_WG);
-
-/// Mean velocity (m/s, heading axes) minus the commanded one: a bias b leads to a circle of radius
-/// |b| / yaw rate. `yaw` in rad; `v_WG_W` in m/s, world axes. Absent without samples.
-std::optional<Vec2> body_bias(std::span<const double> yaw, std::span<const Vec2> v_WG_W,
-                              const Vec2& commanded_v_H);
-
-/// Median, p99 and largest of the tick times, medians of the others; zeros (no solution in that
-/// tick) are left out of `mpc_us` and `wbc_us` by the caller. physics and real time are not set.
-TimingMetrics summarise_times(std::span<const double> tick_us, std::span<const double> mpc_us,
-                              std::span<const double> wbc_us);
-
 /// The text of metrics.json: non-finite and absent values are null.
 std::string to_json(const Metrics& metrics);
 
@@ -226,7 +153,7 @@ void Metrics::fields(Self& m, Visit&& v) {
   v(com.body_bias_x_mm_s, "com.body_bias_x_mm_s", "mm/s", "forwards");
   v(com.body_bias_y_mm_s, "com.body_bias_y_mm_s", "mm/s", "to the left");
   v(com.bias_circle_mm, "com.bias_circle_mm", "mm",
-    "radius of the circle that this bias draws at the yaw rate achieved");
+    "radius of the circle that this bias draws at the yaw rate achieved; null below half a turn");
   v(com.velocity_range_x_mm_s, "com.velocity_range_x_mm_s", "mm/s",
     "range of the CoM's velocity along world x in 10 s, mean over the record");
   v(com.velocity_range_y_mm_s, "com.velocity_range_y_mm_s", "mm/s", "the same along y");

@@ -6,6 +6,7 @@
 
 #include "pirouette/base/stopwatch.hpp"
 #include "pirouette/controller/spin_controller.hpp"
+#include "pirouette/metrics/motion_metrics.hpp"
 #include "pirouette/plant/simulated_world.hpp"
 #include "pirouette/runtime/recording.hpp"
 #include "pirouette/runtime/turn_by_angle.hpp"
@@ -258,10 +259,8 @@ class Trial final : public MotionSource, public Observer {
 
   bool watch(const TickView& view) override {
     if (fall_tick_) return true;
-    tick_us_.push_back(view.tick_us);
     const TickTiming& timing = controller_.timing();
-    if (timing.mpc_us > 0.0) mpc_us_.push_back(timing.mpc_us);
-    if (timing.wbc_us > 0.0) wbc_us_.push_back(timing.wbc_us);
+    tick_times_.add(view.tick_us, timing.mpc_us, timing.wbc_us);
     log(*view.truth);
     return report(*view.truth);
   }
@@ -314,7 +313,8 @@ class Trial final : public MotionSource, public Observer {
   void log(const PlantTruth& truth) {
     const TickTrace& trace = controller_.trace();
     if (tick_ >= schedule_.record) {
-      record_.add(truth, yaw_.value(), trace.state, trace.path.arc_length);
+      if (!motion_) motion_.emplace(commanded_, schedule_.rate);
+      motion_->add(motion_sample(truth, yaw_.value(), trace.state, trace.path.arc_length));
       if (tick_ == schedule_.record) {
         progress_.begin(commanded_.path, truth.p_WG.head<2>(), yaw_.value(), trace.path.arc_length);
       }
@@ -346,7 +346,7 @@ class Trial final : public MotionSource, public Observer {
   Metrics summarise() const {
     const double wall = watch_.seconds();
     const double simulated = schedule_.seconds(tick_);
-    Metrics m = evaluate(record_, commanded_, schedule_.rate);
+    Metrics m = motion_ ? motion_->result() : Metrics{};
     m.done = progress_.share();
     if (turns_by_angle(setup_)) {
       m.angle_error_deg = progress_.turned() * 180.0 / kPi - setup_.trial.angle_deg;
@@ -356,7 +356,7 @@ class Trial final : public MotionSource, public Observer {
     if (fall_tick_) m.fall_time_s = schedule_.seconds(*fall_tick_);
     m.stand_down_delay_s = stand_down_delay_;
     for (const bool dropped : controller_.trace().flag_dropped) m.contact.dropped_flags += dropped;
-    m.timing = summarise_times(tick_us_, mpc_us_, wbc_us_);
+    m.timing = tick_times_.result();
     m.timing.physics_step_us_median = plant_.physics_step_us_median();
     m.timing.real_time_factor = simulated / wall;
     m.context = setup_.context;
@@ -379,8 +379,8 @@ class Trial final : public MotionSource, public Observer {
   double believed_start_yaw_ = 0.0;  ///< rad, where that turn began, as the controller believed
   MotionCommand last_command_;       ///< of that turn
   std::int64_t ticks_since_turn_ = 0;
-  MotionRecord record_;
-  std::vector<double> tick_us_, mpc_us_, wbc_us_;
+  std::optional<MotionMetrics> motion_;  ///< of the recorded ticks
+  TickTimes tick_times_;
   std::int64_t tick_ = 0;  ///< the last one before a fall
   std::int64_t rows_ = 0;
   std::int64_t stood_down_ticks_ = 0;

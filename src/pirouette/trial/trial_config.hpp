@@ -38,9 +38,10 @@ struct TrialConfig {
       "empty: none.");
     v(s.path_speed, "path_speed", "m/s", Range{0.0, 2.0},
       "Speed along run.path; 0: as its file says.");
-    v(s.laps, "laps", "1", Range{0.01, 1e5}, "Laps of a closed run.path to record after settling.");
+    v(s.laps, "laps", "1", Range{0.01, 1e5},
+      "Laps of a closed run.path to record after settling, up to 1e6 s in all.");
     v(s.turns, "turns", "1", Range{0.01, 1e5},
-      "Turns to record after settling; 10 s each without a yaw rate.");
+      "Turns to record after settling, up to 1e6 s in all; 10 s each without a yaw rate.");
     v(s.angle_deg, "angle_deg", "deg", Range{-36000.0, 36000.0},
       "Turn by this angle at run.rate, positive to the left, and stand; 0: turn on for run.turns.");
     v(s.time_limit, "time_limit", "s", Range{0.0, 1e6},
