@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pirouette/controller/command_guard.hpp"
+#include "pirouette/controller/tick_clock.hpp"
 #include "support/closed_loop.hpp"
 
 namespace pirouette {
@@ -111,7 +112,7 @@ TEST(SpinController, BridgesAFewBadReadingsOfAnySensor) {
     ClosedLoop loop(config);
     loop.run(0.2, stand_still());
     loop.run(1.0, spin(0.7));
-    for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+    for (int i = 0; i < ticks_in(config.safety.max_bad_reading_time, kTick); ++i) {
       SensorReading sensors = loop.plant.sense();
       spoil(sensors);
       ASSERT_TRUE(is_finite(loop.tick(sensors, spin(0.7))));
@@ -130,7 +131,7 @@ TEST(SpinController, TreatsABadCommandLikeABadReading) {
   loop.run(0.5, spin(0.7));
   MotionCommand bad = spin(kNan);
   bad.point = Vec2(kNan, 0.0);
-  for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+  for (int i = 0; i < ticks_in(config.safety.max_bad_reading_time, kTick); ++i) {
     ASSERT_TRUE(is_finite(loop.tick(bad)));
     ASSERT_EQ(loop.controller.status(), ControllerStatus::kWalking);
   }
@@ -157,7 +158,7 @@ TEST(SpinController, StandsDownAfterTooManyBadReadingsUntilReset) {
   ClosedLoop loop(config);
   loop.run(0.2, stand_still());
   loop.run(1.0, spin(0.7));
-  for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+  for (int i = 0; i < ticks_in(config.safety.max_bad_reading_time, kTick); ++i) {
     loop.tick(spoilt(loop.plant.sense()), spin(0.7));
   }
   EXPECT_EQ(loop.controller.status(), ControllerStatus::kWalking);
@@ -241,15 +242,15 @@ TEST(SpinController, StandsDownWhenNoForcesCanBeFound) {
   config.mpc.min_normal_force = 100.0;
   config.mpc.max_normal_force = 50.0;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kSolverFailed),
-            config.safety.max_solver_failures + 1);
+            ticks_in(config.safety.max_hold_time, kTick) + 1);
 }
 
 TEST(SpinController, StandsDownWhenWholeBodyControlFailsAlthoughTheMpcDoesNot) {
   Config config;
-  config.mpc.ticks_per_solve = 1;
+  config.mpc.solve_period = 0.0;
   config.wbc.weight_acceleration = kNan;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kSolverFailed),
-            config.safety.max_solver_failures + 1);
+            ticks_in(config.safety.max_hold_time, kTick) + 1);
 }
 
 TEST(SpinController, StandsDownRatherThanSendACommandThatIsNotFinite) {

@@ -34,7 +34,7 @@ double tilt_error(const Mat3& estimate, const Mat3& truth) {
 
 TEST(AttitudeFilter, KeepsItsAttitudeAtRest) {
   const Mat3 R_WB = rotation_from_rpy({0.2, -0.3, 1.1});
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   filter.reset(R_WB);
   Attitude out;
   for (int i = 0; i < 5000; ++i) {
@@ -47,7 +47,7 @@ TEST(AttitudeFilter, KeepsItsAttitudeAtRest) {
 TEST(AttitudeFilter, IntegratesTheGyroExactlyOnSo3) {
   EstimationConfig config;
   config.attitude_time_constant = 1e12;  // gravity has no say
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 w_WB_B(0.4, -0.7, 1.3);
   Attitude out;
   for (int i = 0; i < 500; ++i)
@@ -57,14 +57,14 @@ TEST(AttitudeFilter, IntegratesTheGyroExactlyOnSo3) {
 
 TEST(AttitudeFilter, LearnsTheGyroBiasAtRestShrunkTowardsNone) {
   const EstimationConfig config;
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 bias(2e-4, -3e-4, 1e-4);
   const AttitudeInput still{bias, gravity_B(Mat3::Identity()), Vec3::Zero(), true, {}};
   filter.update(still, kTick);
   EXPECT_EQ(filter.gyro_bias(), Vec3::Zero());  // one sample has no slope over time
   for (int n = 2; n <= 1000; ++n) {
     const Attitude out = filter.update(still, kTick);
-    const double share = n / (n + config.gyro_rest_samples);
+    const double share = n / (n + config.gyro_rest_time / kTick);
     // The regression's sums of n^4 lose 1e-16 n^2 of its value.
     ASSERT_LT(distance(filter.gyro_bias(), share * bias), 1e-10 * bias.norm());
     ASSERT_LT(distance(out.w_WB_B, (1.0 - share) * bias), 1e-10 * bias.norm());
@@ -75,7 +75,7 @@ TEST(AttitudeFilter, TiltErrorDecaysWithTheTimeConstant) {
   const EstimationConfig config;
   const Mat3 truth = rotation_from_rpy({0.1, 0.05, 0.4});
   for (const Vec3& axis : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.6, -0.8, 0.0)}) {
-    AttitudeFilter filter{config};
+    AttitudeFilter filter{config, kTick};
     constexpr double kInitial = 1e-3;
     filter.reset(exp_so3(kInitial * axis) * truth);
     const int ticks = static_cast<int>(std::lround(config.attitude_time_constant / kTick));
@@ -89,7 +89,7 @@ TEST(AttitudeFilter, TiltErrorDecaysWithTheTimeConstant) {
 
 TEST(AttitudeFilter, FindsTheHorizontalGyroBiasWhileWalking) {
   const EstimationConfig config;
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 bias(1e-3, -2e-3, 0.0);
   Attitude out;
   // Ten times the slower of the two time constants.
@@ -101,7 +101,7 @@ TEST(AttitudeFilter, FindsTheHorizontalGyroBiasWhileWalking) {
 }
 
 TEST(AttitudeFilter, YawIsTheIntegralOfTheGyroBecauseNothingObservesIt) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   const Vec3 bias(0.0, 0.0, 5e-4);
   Attitude out;
   for (int i = 0; i < 50000; ++i)
@@ -116,7 +116,7 @@ TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
   const Vec3 p_axis_B(0.008, 0.003, 0.0);  // m, trunk origin from the axis
   const Vec3 a_B = w_WB_B.cross(w_WB_B.cross(p_axis_B));
   const auto tilt_after_turning = [&](bool velocity_known) {
-    AttitudeFilter filter{EstimationConfig{}};
+    AttitudeFilter filter{EstimationConfig{}, kTick};
     Mat3 truth = Mat3::Identity();
     Attitude out;
     for (int i = 0; i < 10000; ++i) {
@@ -134,7 +134,7 @@ TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
 }
 
 TEST(AttitudeFilter, LearnsNothingFromFreeFall) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   const Mat3 R_WB = rotation_from_rpy({0.1, 0.2, 0.3});
   filter.reset(R_WB);
   Attitude out;
@@ -143,7 +143,7 @@ TEST(AttitudeFilter, LearnsNothingFromFreeFall) {
 }
 
 TEST(AttitudeFilter, AccelerationsOfTheGaitThatAverageToZeroLeaveNoTilt) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   Attitude out;
   double largest = 0.0;
   for (int i = 0; i < 10000; ++i) {
@@ -159,7 +159,7 @@ TEST(AttitudeFilter, AccelerationsOfTheGaitThatAverageToZeroLeaveNoTilt) {
 
 TEST(AttitudeFilter, AnImpactTiltsItLittle) {
   const EstimationConfig config;
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 impact(1e4, 0.0, 0.0);
   const Attitude out = filter.update({Vec3::Zero(), impact, Vec3::Zero()}, kTick);
   // Counted as no more than a few g for the one tick.
@@ -194,7 +194,7 @@ TEST(TurnOverFeet, OppositeMovesAreOppositeTurnsToFirstOrder) {
 /// Stands for a second while the trunk turns towards `sag` (rad, rotation vector) as a leg gives
 /// way: fast first, then creeping. Returns the bias that was learnt.
 Vec3 bias_after_sagging(const Vec3& sag, const Vec3& bias, bool feet_known) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   const auto attitude = [&](double t) { return exp_so3(sag * (1.0 - std::exp(-t / 0.4))); };
   for (int i = 1; i <= 500; ++i) {
     const Mat3 R_before = attitude((i - 1) * kTick), R_WB = attitude(i * kTick);
@@ -210,7 +210,7 @@ Vec3 bias_after_sagging(const Vec3& sag, const Vec3& bias, bool feet_known) {
 
 TEST(AttitudeFilter, ATrunkThatSagsAtRestIsNoGyroBias) {
   const EstimationConfig config;
-  const double share = 500.0 / (500.0 + config.gyro_rest_samples);
+  const double share = 500.0 / (500.0 + config.gyro_rest_time / kTick);
   const Vec3 sag(2e-3, -1e-3, 1e-3), bias(2e-4, -3e-4, 1e-4);
   // Blind to the feet, the sag itself passes for a bias many times the true one.
   EXPECT_GT((bias_after_sagging(sag, Vec3::Zero(), false)).norm(), 2.0 * bias.norm());
@@ -221,7 +221,7 @@ TEST(AttitudeFilter, ATrunkThatSagsAtRestIsNoGyroBias) {
 }
 
 TEST(AttitudeFilter, ForgetsItsBiasOnReset) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   for (int i = 0; i < 2; ++i) {
     filter.update({Vec3(0.01, 0.0, 0.0), gravity_B(Mat3::Identity()), Vec3::Zero(), true}, kTick);
   }

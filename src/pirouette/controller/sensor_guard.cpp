@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pirouette/controller/tick_clock.hpp"
+
 namespace pirouette {
 
 namespace {
@@ -35,7 +37,7 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
     ++bad_inputs_;
     input_.sensors.time += period_;
     input_.sensors.aid.reset();  // heard once
-    return started_ && bad_inputs_ <= config_.max_bad_readings;
+    return started_ && bad_inputs_ <= ticks_in(config_.max_bad_reading_time, period_);
   }
   bad_inputs_ = 0;
   if (started_) {
@@ -55,7 +57,7 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
   started_ = true;
   const auto blind_legs =
       std::count(input_.encoder_stuck.begin(), input_.encoder_stuck.end(), true);
-  return repeated_samples_ <= config_.max_repeated_samples && blind_legs <= 1;
+  return repeated_samples_ <= ticks_in(config_.max_repeat_time, period_) && blind_legs <= 1;
 }
 
 bool SensorGuard::is_outlier(const SensorReading& sensors) const noexcept {
@@ -66,7 +68,8 @@ bool SensorGuard::is_outlier(const SensorReading& sensors) const noexcept {
 
 void SensorGuard::watch_imu(const SensorReading& sensors, bool walking) noexcept {
   // What stays there for long is no spike: the robot was hit.
-  const bool spike = is_outlier(sensors) && outliers_ < config_.max_bad_readings;
+  const bool spike =
+      is_outlier(sensors) && outliers_ < ticks_in(config_.max_bad_reading_time, period_);
   outliers_ = spike ? outliers_ + 1 : 0;
   const bool repeated =
       sensors.w_WB_B == last_raw_.w_WB_B && sensors.specific_force_B == last_raw_.specific_force_B;

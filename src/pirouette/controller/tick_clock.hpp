@@ -2,9 +2,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace pirouette {
+
+/// Ticks of `period` (s) that are nearest to `time` (s).
+inline int ticks_in(double time, double period) {
+  return static_cast<int>(std::lround(time / period));
+}
 
 /// Measures the period from the readings' own times. A reading that is early, late or stamped
 /// wrongly counts as half to ten nominal periods.

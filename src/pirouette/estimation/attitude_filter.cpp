@@ -44,7 +44,7 @@ void AttitudeFilter::calibrate(const AttitudeInput& in, double dt) noexcept {
   if (spread <= 0.0) return;
   const Vec3 slope = (rest_.samples * rest_.sum_tx - rest_.sum_t * rest_.sum_x) / spread;
   // Shrunk to what was known before (nothing: no bias) while there are few samples.
-  const double share = rest_.samples / (rest_.samples + config_.gyro_rest_samples);
+  const double share = rest_.samples / (rest_.samples + prior_samples_);
   gyro_bias_ = rest_.bias_before + share * (slope - rest_.bias_before);
 }
 

@@ -36,7 +36,9 @@ struct Attitude {
 /// truth: the bias is the slope, over the time at rest, of what the gyro's integral adds to that.
 class AttitudeFilter {
  public:
-  explicit AttitudeFilter(const EstimationConfig& config) : config_(config) {}
+  /// `period` (s) is that of update().
+  AttitudeFilter(const EstimationConfig& config, double period)
+      : config_(config), prior_samples_(config.gyro_rest_time / period) {}
 
   Attitude update(const AttitudeInput& in, double dt) noexcept;
   void reset(const Mat3& R_WB);
@@ -45,12 +47,13 @@ class AttitudeFilter {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, q_WB, gyro_bias, rest] = self;
+    auto& [config, prior_samples, q_WB, gyro_bias, rest] = self;
     visit(q_WB, gyro_bias, rest);
   }
 
  private:
   EstimationConfig config_;
+  double prior_samples_;  ///< at rest, that the prior of the gyro bias is worth
   Quat q_WB_ = Quat::Identity();
   Vec3 gyro_bias_ = Vec3::Zero();
   void calibrate(const AttitudeInput& in, double dt) noexcept;
