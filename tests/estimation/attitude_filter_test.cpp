@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <random>
+#include <vector>
+
 #include "pirouette/base/rotation.hpp"
 #include "support/vectors.hpp"
 
@@ -218,6 +222,89 @@ TEST(AttitudeFilter, ATrunkThatSagsAtRestIsNoGyroBias) {
   EXPECT_LT(bias_after_sagging(sag, Vec3::Zero(), true).norm(), 1e-5);
   EXPECT_LT(distance(bias_after_sagging(sag, bias, true), share * bias), 1e-5);
   EXPECT_LT(distance(bias_after_sagging(Vec3::Zero(), bias, true), share * bias), 1e-10);
+}
+
+/// A robot whose gyro reads its turn and `bias` (rad/s), both with noise, as does the
+/// accelerometer.
+class NoisyImu {
+ public:
+  NoisyImu() { filter.reset(Mat3::Identity()); }
+
+  /// `w_WB_B`: rad/s, of robot and ground together, at rest for the filter unless `walks`.
+  void run(double duration, const std::function<Vec3(double)>& w_WB_B, bool walks = false) {
+    for (int i = 0; i < static_cast<int>(std::lround(duration / kTick)); ++i) {
+      const Vec3 w = w_WB_B(i * kTick);
+      R_WB = R_WB * exp_so3(kTick * w);
+      AttitudeInput in;
+      in.w_WB_B = w + bias + noise(0.005);
+      in.specific_force_B = gravity_B(R_WB) + noise(0.05);
+      in.at_rest = !walks;
+      in.p_BF = feet_B(Mat3::Identity(), kStandingAt);
+      out = filter.update(in, kTick);
+    }
+  }
+  void stand(double duration) {
+    run(duration, [](double) -> Vec3 { return Vec3::Zero(); });
+  }
+  double bias_error() const { return distance(filter.gyro_bias(), bias); }
+
+  AttitudeFilter filter{EstimationConfig{}, kTick};
+  Mat3 R_WB = Mat3::Identity();
+  Vec3 bias = Vec3::Zero();
+  Attitude out;
+
+ private:
+  Vec3 noise(double deviation) {
+    return deviation * Vec3(gaussian_(random_), gaussian_(random_), gaussian_(random_));
+  }
+  std::mt19937 random_{1};
+  std::normal_distribution<double> gaussian_;
+};
+
+// rad/s, four deviations of the slope over 500 readings with noise of 5e-3, three axes.
+constexpr double kSlopeError = 4.0 * 5e-3 * 0.0849;
+
+TEST(AttitudeFilter, BelievesABiasThatIsManyDeviationsFromThePrior) {
+  for (const Vec3& bias : {Vec3(0.0, 0.0, 0.02), Vec3(0.02, -0.02, 0.02), Vec3(0.0, 0.005, 0.0)}) {
+    NoisyImu robot;
+    robot.bias = bias;
+    robot.stand(1.0);
+    EXPECT_LT(robot.bias_error(), kSlopeError);
+    // The attitude is free of what the bias had turned it by before it was believed: 10 mrad.
+    EXPECT_LT(distance(robot.out.R_WB, robot.R_WB), 1.5e-3);
+  }
+}
+
+TEST(AttitudeFilter, HoldsABiasThatThePriorAllowsToThePrior) {
+  const double share = 500.0 / (500.0 + EstimationConfig{}.gyro_rest_time / kTick);
+  NoisyImu robot;
+  robot.bias = Vec3(0.0, 0.0, 4e-4);
+  robot.stand(1.0);
+  EXPECT_LT(distance(robot.filter.gyro_bias(), share * robot.bias), share * kSlopeError);
+}
+
+TEST(AttitudeFilter, ARobotThatIsTurnedIsNotAtRest) {
+  const auto swung = [](double t) -> Vec3 { return Vec3(0.0, 0.0, 0.1 * std::sin(6.0 * t)); };
+  const auto turned = [](double) -> Vec3 { return Vec3(0.0, 0.0, 0.2); };
+  const auto tilted = [](double) -> Vec3 { return Vec3(0.05, 0.0, 0.0); };
+  for (const auto& turn : std::vector<std::function<Vec3(double)>>{swung, turned, tilted}) {
+    NoisyImu robot;
+    robot.run(1.0, turn);
+    EXPECT_EQ(robot.filter.gyro_bias(), Vec3::Zero());
+    // Put down: the bias can still be learnt.
+    robot.bias = Vec3(0.0, 0.0, 0.02);
+    robot.stand(2.0);
+    EXPECT_LT(robot.bias_error(), kSlopeError);
+  }
+}
+
+TEST(AttitudeFilter, ALaterRestDoesNotOverruleTheBiasOfTheFirst) {
+  NoisyImu robot;
+  robot.stand(1.0);
+  robot.run(0.1, [](double) -> Vec3 { return Vec3::Zero(); }, true);
+  robot.run(0.6, [](double) -> Vec3 { return Vec3(0.0, 0.0, 0.05); });  // on a turntable
+  const double share = 300.0 / (300.0 + EstimationConfig{}.gyro_rest_time / kTick);
+  EXPECT_NEAR(robot.filter.gyro_bias().z(), share * 0.05, kSlopeError);
 }
 
 TEST(AttitudeFilter, ForgetsItsBiasOnReset) {

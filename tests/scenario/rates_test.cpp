@@ -1,4 +1,4 @@
-// Control rates in the real closed loop.
+// Control rates, and a gyro that is switched on with a large bias, in the real closed loop.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -50,6 +50,19 @@ INSTANTIATE_TEST_SUITE_P(Rates, SpinAtRate,
                                          Loop{"go1", "nominal", 100}, Loop{"go1", "realistic", 200},
                                          Loop{"go1", "realistic", 1000}),
                          name_of);
+
+class BiasedGyro : public testing::TestWithParam<int> {};
+
+TEST_P(BiasedGyro, CostsNothingAfterASecondOfStanding) {
+  const Loop loop{"mini_cheetah", "nominal", GetParam()};
+  const std::vector<std::string> bias = {"plant.faults.start=0", "plant.faults.gyro_bias=0.02"};
+  const Metrics m = spin(loop, bias);
+  EXPECT_FALSE(m.fell);
+  EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 5e-4);
+  EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 1.5);
+}
+
+INSTANTIATE_TEST_SUITE_P(Rates, BiasedGyro, testing::Values(500, 1000));
 
 }  // namespace
 }  // namespace pirouette

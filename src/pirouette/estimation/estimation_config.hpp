@@ -33,6 +33,7 @@ struct EstimationConfig {
   double attitude_time_constant = 4.0;
   double gyro_bias_time_constant = 60.0;
   double gyro_rest_time = 1.2;
+  double gyro_bias_prior = 2e-4;
   double tilt_bias_time = 20.0;
   double contact_debounce_time = 0.006;
 
@@ -68,6 +69,9 @@ struct EstimationConfig {
     v(s.gyro_rest_time, "gyro_rest_time", "s", Range{0.0, 2000.0},
       "Time at rest that the prior of no gyro bias is worth: density of the noise over variance "
       "of the bias.");
+    v(s.gyro_bias_prior, "gyro_bias_prior", "rad/s", Range{0.0, 10.0},
+      "Deviation of that prior. A first rest whose bias is many of it, and of the noise, from none "
+      "is believed without the prior.");
     v(s.tilt_bias_time, "tilt_bias_time", "s", Range{0.0, 1000.0},
       "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: "
       "off.");
