@@ -293,6 +293,14 @@ TEST_F(ConfigFiles, TyposAreAnsweredWithTheNearestKey) {
             "my.toml:1: torsional_friction: unknown key; did you mean plant.torsional_friction?");
 }
 
+TEST_F(ConfigFiles, AKeyThatCountedTicksIsAnsweredWithTheTimeThatStandsForIt) {
+  EXPECT_EQ(error_of("[mpc]\nticks_per_solve = 12\n"),
+            "my.toml:2: mpc.ticks_per_solve: unknown key; it is mpc.solve_period now, in s");
+  EXPECT_EQ(error_of_override("safety.max_repeated_samples=50"),
+            "--set: safety.max_repeated_samples: unknown key; it is safety.max_repeat_time now, "
+            "in s");
+}
+
 TEST_F(ConfigFiles, AnUnknownKeyWithoutANearOneListsWhatIsAllowedThere) {
   EXPECT_EQ(error_of("[control]\nwhatever_this_is = 0.5\n"),
             "my.toml:2: control.whatever_this_is: unknown key; allowed here: rate");
@@ -384,7 +392,7 @@ TEST_F(ConfigFiles, RelationsBetweenParametersAreChecked) {
             std::string::npos);
   EXPECT_NE(error_of("[gait]\nperiod = 0.2\nduty = 0.9\n").find("my.toml:3: gait.duty"),
             std::string::npos);
-  EXPECT_NE(error_of("[mpc]\nhorizon = 2\nticks_per_solve = 100\n").find("within the horizon"),
+  EXPECT_NE(error_of("[mpc]\nhorizon = 2\nsolve_period = 0.2\n").find("within the horizon"),
             std::string::npos);
   EXPECT_NE(error_of("[terrain]\nstep_residual = 0.001\nstep_residual_release = 0.002\n")
                 .find("my.toml:3: terrain.step_residual_release"),

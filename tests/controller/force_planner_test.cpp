@@ -5,17 +5,18 @@
 namespace pirouette {
 namespace {
 
+constexpr double kTick = 0.002;                // s
 constexpr double kMass = 9.0, kHeight = 0.29;  // kg, m
 
 /// A robot that stands, and is meant to.
 class Standing {
  public:
-  explicit Standing(const MpcConfig& config)
+  explicit Standing(const MpcConfig& config, double tick = kTick)
       : clock(GaitConfig{}),
-        planner(config, 0.5, kHeight, kMass, Vec3(0.05, 0.2, 0.25).asDiagonal()) {
+        planner(config, tick, 0.5, kHeight, kMass, Vec3(0.05, 0.2, 0.25).asDiagonal()) {
     state.p_WG.z() = kHeight;
     reference.p_WG.z() = kHeight;
-    gait = clock.update(false, 0.002);
+    gait = clock.update(false, tick);
     for (const Leg leg : kLegs) {
       contacts[leg].in_contact = true;
       contacts[leg].p_WC = Vec3(0.19 * fore_sign(leg), 0.11 * side_sign(leg), 0.0);
@@ -52,7 +53,7 @@ TEST(ForcePlanner, CarriesAStandingRobot) {
 
 TEST(ForcePlanner, SolvesEveryFewTicksAndWhenTheContactsChange) {
   MpcConfig config;
-  config.ticks_per_solve = 3;
+  config.solve_period = 3 * kTick;
   Standing robot(config);
   for (int i = 0; i < 9; ++i) {
     robot.update();
@@ -64,9 +65,26 @@ TEST(ForcePlanner, SolvesEveryFewTicksAndWhenTheContactsChange) {
   EXPECT_TRUE(robot.solved());
 }
 
+TEST(ForcePlanner, SolvesAsOftenAtAnyRateAndAtLeastEveryTick) {
+  const auto solutions = [](const MpcConfig& config, double rate) {
+    Standing robot(config, 1.0 / rate);
+    int count = 0;
+    for (int i = 0; i < static_cast<int>(rate); ++i) {
+      robot.update();
+      count += robot.solved() ? 1 : 0;
+    }
+    return count;
+  };
+  MpcConfig config;
+  config.solve_period = 0.02;
+  for (const double rate : {100.0, 200.0, 500.0, 1000.0}) EXPECT_EQ(solutions(config, rate), 50);
+  config.solve_period = 0.004;
+  EXPECT_EQ(solutions(config, 100.0), 100);
+}
+
 TEST(ForcePlanner, HoldsTheLastGoodForcesAndCountsFailures) {
   MpcConfig config;
-  config.ticks_per_solve = 1;
+  config.solve_period = kTick;
   Standing robot(config);
   const ContactForces good = robot.update();
   robot.state.p_WG.x() = std::numeric_limits<double>::quiet_NaN();

@@ -75,7 +75,7 @@ class Standing {
 
 TEST(Localization, AFlagCountsWhenItHasHeldForTheDebounceTime) {
   Config config;
-  config.estimation.contact_debounce = 4;
+  config.estimation.contact_debounce_time = 4 * kTick;
   Standing robot(config);
   for (int i = 0; i < 3; ++i) EXPECT_FALSE(robot.measured(Leg::kFL, true)) << i;
   EXPECT_TRUE(robot.measured(Leg::kFL, true));
@@ -85,16 +85,26 @@ TEST(Localization, AFlagCountsWhenItHasHeldForTheDebounceTime) {
 
 TEST(Localization, WrongFlagsThatDoNotLastAreIgnoredHoweverMany) {
   Config config;
-  config.estimation.contact_debounce = 3;
+  config.estimation.contact_debounce_time = 3 * kTick;
   Standing robot(config);
   for (int i = 0; i < 3; ++i) robot.measured(Leg::kRR, true);
   for (int i = 0; i < 140; ++i) EXPECT_TRUE(robot.measured(Leg::kRR, i % 3 == 0)) << i;
   EXPECT_FALSE(robot.measured(Leg::kRR, false) && robot.measured(Leg::kRR, false));
 }
 
+TEST(Localization, TheDebounceTimeIsTheSameAtAnyRate) {
+  for (const auto& [rate, ticks] : {std::pair(100.0, 1), {200.0, 1}, {500.0, 3}, {1000.0, 6}}) {
+    Config config;
+    config.control.rate = rate;
+    Standing robot(config);
+    for (int i = 1; i < ticks; ++i) EXPECT_FALSE(robot.measured(Leg::kFL, true)) << rate;
+    EXPECT_TRUE(robot.measured(Leg::kFL, true)) << rate;
+  }
+}
+
 TEST(Localization, EveryFootIsDebouncedByItself) {
   Config config;
-  config.estimation.contact_debounce = 2;
+  config.estimation.contact_debounce_time = 2 * kTick;
   Standing robot(config);
   for (int i = 0; i < 2; ++i) robot.find_contacts();
   // FR is wrong in one tick, FL in the next.
@@ -106,7 +116,7 @@ TEST(Localization, EveryFootIsDebouncedByItself) {
 
 TEST(Localization, WithoutDebouncingTheFlagIsTakenAsItIs) {
   Config config;
-  config.estimation.contact_debounce = 1;
+  config.estimation.contact_debounce_time = 1 * kTick;
   Standing robot(config);
   for (const bool flag : {true, false, true, true, false}) {
     EXPECT_EQ(robot.measured(Leg::kRL, flag), flag);
@@ -115,7 +125,7 @@ TEST(Localization, WithoutDebouncingTheFlagIsTakenAsItIs) {
 
 TEST(Localization, AFootWhoseEncodersAreStuckIsNotMeasured) {
   Config config;
-  config.estimation.contact_debounce = 3;
+  config.estimation.contact_debounce_time = 3 * kTick;
   Standing robot(config);
   for (int i = 0; i < 3; ++i) robot.find_contacts();
   EXPECT_TRUE(robot.contacts[Leg::kFL].measured);
@@ -137,7 +147,7 @@ TEST(Localization, WithoutContactSensingTheScheduleStandsIn) {
 
 TEST(Localization, AFootThatLandsLateInItsSwingCarriesUntilTheNextLiftOff) {
   Config config;
-  config.estimation.contact_debounce = 1;
+  config.estimation.contact_debounce_time = 1 * kTick;
   config.gait.early_contact_progress = 0.6;
   Standing robot(config);
   const Leg leg = Leg::kFL;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "pirouette/controller/command_guard.hpp"
+#include "pirouette/controller/tick_clock.hpp"
 #include "support/closed_loop.hpp"
 
 namespace pirouette {
@@ -118,7 +119,7 @@ TEST(SpinController, BridgesAFewBadReadingsOfAnySensor) {
     ClosedLoop loop(config);
     loop.run(0.2, stand_still());
     loop.run(1.0, spin(0.7));
-    for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+    for (int i = 0; i < ticks_in(config.safety.max_bad_reading_time, kTick); ++i) {
       SensorReading sensors = loop.plant.sense();
       spoil(sensors);
       ASSERT_TRUE(is_finite(loop.tick(sensors, spin(0.7))));
@@ -137,7 +138,7 @@ TEST(SpinController, TreatsABadCommandLikeABadReading) {
   loop.run(0.5, spin(0.7));
   MotionCommand bad = spin(kNan);
   bad.point = Vec2(kNan, 0.0);
-  for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+  for (int i = 0; i < ticks_in(config.safety.max_bad_reading_time, kTick); ++i) {
     ASSERT_TRUE(is_finite(loop.tick(bad)));
     ASSERT_EQ(loop.controller.status(), ControllerStatus::kWalking);
   }
@@ -164,7 +165,7 @@ TEST(SpinController, StandsDownAfterTooManyBadReadingsUntilReset) {
   ClosedLoop loop(config);
   loop.run(0.2, stand_still());
   loop.run(1.0, spin(0.7));
-  for (int i = 0; i < config.safety.max_bad_readings; ++i) {
+  for (int i = 0; i < ticks_in(config.safety.max_bad_reading_time, kTick); ++i) {
     loop.tick(spoilt(loop.plant.sense()), spin(0.7));
   }
   EXPECT_EQ(loop.controller.status(), ControllerStatus::kWalking);
@@ -248,15 +249,15 @@ TEST(SpinController, StandsDownWhenNoForcesCanBeFound) {
   config.mpc.min_normal_force = 100.0;
   config.mpc.max_normal_force = 50.0;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kSolverFailed),
-            config.safety.max_solver_failures + 1);
+            ticks_in(config.safety.max_hold_time, kTick) + 1);
 }
 
 TEST(SpinController, StandsDownWhenWholeBodyControlFailsAlthoughTheMpcDoesNot) {
   Config config = unchecked();
-  config.mpc.ticks_per_solve = 1;
+  config.mpc.solve_period = 0.0;
   config.wbc.weight_acceleration = kNan;
   EXPECT_EQ(ticks_until_stood_down(config, ControllerStatus::kSolverFailed),
-            config.safety.max_solver_failures + 1);
+            ticks_in(config.safety.max_hold_time, kTick) + 1);
 }
 
 TEST(SpinController, StandsDownRatherThanSendACommandThatIsNotFinite) {

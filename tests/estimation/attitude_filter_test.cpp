@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
+#include <random>
+#include <vector>
+
 #include "pirouette/base/rotation.hpp"
 #include "support/vectors.hpp"
 
@@ -34,7 +38,7 @@ double tilt_error(const Mat3& estimate, const Mat3& truth) {
 
 TEST(AttitudeFilter, KeepsItsAttitudeAtRest) {
   const Mat3 R_WB = rotation_from_rpy({0.2, -0.3, 1.1});
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   filter.reset(R_WB);
   Attitude out;
   for (int i = 0; i < 5000; ++i) {
@@ -47,7 +51,7 @@ TEST(AttitudeFilter, KeepsItsAttitudeAtRest) {
 TEST(AttitudeFilter, IntegratesTheGyroExactlyOnSo3) {
   EstimationConfig config;
   config.attitude_time_constant = 1e12;  // gravity has no say
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 w_WB_B(0.4, -0.7, 1.3);
   Attitude out;
   for (int i = 0; i < 500; ++i)
@@ -57,14 +61,14 @@ TEST(AttitudeFilter, IntegratesTheGyroExactlyOnSo3) {
 
 TEST(AttitudeFilter, LearnsTheGyroBiasAtRestShrunkTowardsNone) {
   const EstimationConfig config;
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 bias(2e-4, -3e-4, 1e-4);
   const AttitudeInput still{bias, gravity_B(Mat3::Identity()), Vec3::Zero(), true, {}};
   filter.update(still, kTick);
   EXPECT_EQ(filter.gyro_bias(), Vec3::Zero());  // one sample has no slope over time
   for (int n = 2; n <= 1000; ++n) {
     const Attitude out = filter.update(still, kTick);
-    const double share = n / (n + config.gyro_rest_samples);
+    const double share = n / (n + config.gyro_rest_time / kTick);
     // The regression's sums of n^4 lose 1e-16 n^2 of its value.
     ASSERT_LT(distance(filter.gyro_bias(), share * bias), 1e-10 * bias.norm());
     ASSERT_LT(distance(out.w_WB_B, (1.0 - share) * bias), 1e-10 * bias.norm());
@@ -75,7 +79,7 @@ TEST(AttitudeFilter, TiltErrorDecaysWithTheTimeConstant) {
   const EstimationConfig config;
   const Mat3 truth = rotation_from_rpy({0.1, 0.05, 0.4});
   for (const Vec3& axis : {Vec3(1.0, 0.0, 0.0), Vec3(0.0, 1.0, 0.0), Vec3(0.6, -0.8, 0.0)}) {
-    AttitudeFilter filter{config};
+    AttitudeFilter filter{config, kTick};
     constexpr double kInitial = 1e-3;
     filter.reset(exp_so3(kInitial * axis) * truth);
     const int ticks = static_cast<int>(std::lround(config.attitude_time_constant / kTick));
@@ -89,7 +93,7 @@ TEST(AttitudeFilter, TiltErrorDecaysWithTheTimeConstant) {
 
 TEST(AttitudeFilter, FindsTheHorizontalGyroBiasWhileWalking) {
   const EstimationConfig config;
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 bias(1e-3, -2e-3, 0.0);
   Attitude out;
   // Ten times the slower of the two time constants.
@@ -101,7 +105,7 @@ TEST(AttitudeFilter, FindsTheHorizontalGyroBiasWhileWalking) {
 }
 
 TEST(AttitudeFilter, YawIsTheIntegralOfTheGyroBecauseNothingObservesIt) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   const Vec3 bias(0.0, 0.0, 5e-4);
   Attitude out;
   for (int i = 0; i < 50000; ++i)
@@ -116,7 +120,7 @@ TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
   const Vec3 p_axis_B(0.008, 0.003, 0.0);  // m, trunk origin from the axis
   const Vec3 a_B = w_WB_B.cross(w_WB_B.cross(p_axis_B));
   const auto tilt_after_turning = [&](bool velocity_known) {
-    AttitudeFilter filter{EstimationConfig{}};
+    AttitudeFilter filter{EstimationConfig{}, kTick};
     Mat3 truth = Mat3::Identity();
     Attitude out;
     for (int i = 0; i < 10000; ++i) {
@@ -134,7 +138,7 @@ TEST(AttitudeFilter, SteadyTurnOffTheAxisGivesNoTiltError) {
 }
 
 TEST(AttitudeFilter, LearnsNothingFromFreeFall) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   const Mat3 R_WB = rotation_from_rpy({0.1, 0.2, 0.3});
   filter.reset(R_WB);
   Attitude out;
@@ -143,7 +147,7 @@ TEST(AttitudeFilter, LearnsNothingFromFreeFall) {
 }
 
 TEST(AttitudeFilter, AccelerationsOfTheGaitThatAverageToZeroLeaveNoTilt) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   Attitude out;
   double largest = 0.0;
   for (int i = 0; i < 10000; ++i) {
@@ -159,7 +163,7 @@ TEST(AttitudeFilter, AccelerationsOfTheGaitThatAverageToZeroLeaveNoTilt) {
 
 TEST(AttitudeFilter, AnImpactTiltsItLittle) {
   const EstimationConfig config;
-  AttitudeFilter filter{config};
+  AttitudeFilter filter{config, kTick};
   const Vec3 impact(1e4, 0.0, 0.0);
   const Attitude out = filter.update({Vec3::Zero(), impact, Vec3::Zero()}, kTick);
   // Counted as no more than a few g for the one tick.
@@ -194,7 +198,7 @@ TEST(TurnOverFeet, OppositeMovesAreOppositeTurnsToFirstOrder) {
 /// Stands for a second while the trunk turns towards `sag` (rad, rotation vector) as a leg gives
 /// way: fast first, then creeping. Returns the bias that was learnt.
 Vec3 bias_after_sagging(const Vec3& sag, const Vec3& bias, bool feet_known) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   const auto attitude = [&](double t) { return exp_so3(sag * (1.0 - std::exp(-t / 0.4))); };
   for (int i = 1; i <= 500; ++i) {
     const Mat3 R_before = attitude((i - 1) * kTick), R_WB = attitude(i * kTick);
@@ -210,7 +214,7 @@ Vec3 bias_after_sagging(const Vec3& sag, const Vec3& bias, bool feet_known) {
 
 TEST(AttitudeFilter, ATrunkThatSagsAtRestIsNoGyroBias) {
   const EstimationConfig config;
-  const double share = 500.0 / (500.0 + config.gyro_rest_samples);
+  const double share = 500.0 / (500.0 + config.gyro_rest_time / kTick);
   const Vec3 sag(2e-3, -1e-3, 1e-3), bias(2e-4, -3e-4, 1e-4);
   // Blind to the feet, the sag itself passes for a bias many times the true one.
   EXPECT_GT((bias_after_sagging(sag, Vec3::Zero(), false)).norm(), 2.0 * bias.norm());
@@ -220,8 +224,91 @@ TEST(AttitudeFilter, ATrunkThatSagsAtRestIsNoGyroBias) {
   EXPECT_LT(distance(bias_after_sagging(Vec3::Zero(), bias, true), share * bias), 1e-10);
 }
 
+/// A robot whose gyro reads its turn and `bias` (rad/s), both with noise, as does the
+/// accelerometer.
+class NoisyImu {
+ public:
+  NoisyImu() { filter.reset(Mat3::Identity()); }
+
+  /// `w_WB_B`: rad/s, of robot and ground together, at rest for the filter unless `walks`.
+  void run(double duration, const std::function<Vec3(double)>& w_WB_B, bool walks = false) {
+    for (int i = 0; i < static_cast<int>(std::lround(duration / kTick)); ++i) {
+      const Vec3 w = w_WB_B(i * kTick);
+      R_WB = R_WB * exp_so3(kTick * w);
+      AttitudeInput in;
+      in.w_WB_B = w + bias + noise(0.005);
+      in.specific_force_B = gravity_B(R_WB) + noise(0.05);
+      in.at_rest = !walks;
+      in.p_BF = feet_B(Mat3::Identity(), kStandingAt);
+      out = filter.update(in, kTick);
+    }
+  }
+  void stand(double duration) {
+    run(duration, [](double) -> Vec3 { return Vec3::Zero(); });
+  }
+  double bias_error() const { return distance(filter.gyro_bias(), bias); }
+
+  AttitudeFilter filter{EstimationConfig{}, kTick};
+  Mat3 R_WB = Mat3::Identity();
+  Vec3 bias = Vec3::Zero();
+  Attitude out;
+
+ private:
+  Vec3 noise(double deviation) {
+    return deviation * Vec3(gaussian_(random_), gaussian_(random_), gaussian_(random_));
+  }
+  std::mt19937 random_{1};
+  std::normal_distribution<double> gaussian_;
+};
+
+// rad/s, four deviations of the slope over 500 readings with noise of 5e-3, three axes.
+constexpr double kSlopeError = 4.0 * 5e-3 * 0.0849;
+
+TEST(AttitudeFilter, BelievesABiasThatIsManyDeviationsFromThePrior) {
+  for (const Vec3& bias : {Vec3(0.0, 0.0, 0.02), Vec3(0.02, -0.02, 0.02), Vec3(0.0, 0.005, 0.0)}) {
+    NoisyImu robot;
+    robot.bias = bias;
+    robot.stand(1.0);
+    EXPECT_LT(robot.bias_error(), kSlopeError);
+    // The attitude is free of what the bias had turned it by before it was believed: 10 mrad.
+    EXPECT_LT(distance(robot.out.R_WB, robot.R_WB), 1.5e-3);
+  }
+}
+
+TEST(AttitudeFilter, HoldsABiasThatThePriorAllowsToThePrior) {
+  const double share = 500.0 / (500.0 + EstimationConfig{}.gyro_rest_time / kTick);
+  NoisyImu robot;
+  robot.bias = Vec3(0.0, 0.0, 4e-4);
+  robot.stand(1.0);
+  EXPECT_LT(distance(robot.filter.gyro_bias(), share * robot.bias), share * kSlopeError);
+}
+
+TEST(AttitudeFilter, ARobotThatIsTurnedIsNotAtRest) {
+  const auto swung = [](double t) -> Vec3 { return Vec3(0.0, 0.0, 0.1 * std::sin(6.0 * t)); };
+  const auto turned = [](double) -> Vec3 { return Vec3(0.0, 0.0, 0.2); };
+  const auto tilted = [](double) -> Vec3 { return Vec3(0.05, 0.0, 0.0); };
+  for (const auto& turn : std::vector<std::function<Vec3(double)>>{swung, turned, tilted}) {
+    NoisyImu robot;
+    robot.run(1.0, turn);
+    EXPECT_EQ(robot.filter.gyro_bias(), Vec3::Zero());
+    // Put down: the bias can still be learnt.
+    robot.bias = Vec3(0.0, 0.0, 0.02);
+    robot.stand(2.0);
+    EXPECT_LT(robot.bias_error(), kSlopeError);
+  }
+}
+
+TEST(AttitudeFilter, ALaterRestDoesNotOverruleTheBiasOfTheFirst) {
+  NoisyImu robot;
+  robot.stand(1.0);
+  robot.run(0.1, [](double) -> Vec3 { return Vec3::Zero(); }, true);
+  robot.run(0.6, [](double) -> Vec3 { return Vec3(0.0, 0.0, 0.05); });  // on a turntable
+  const double share = 300.0 / (300.0 + EstimationConfig{}.gyro_rest_time / kTick);
+  EXPECT_NEAR(robot.filter.gyro_bias().z(), share * 0.05, kSlopeError);
+}
+
 TEST(AttitudeFilter, ForgetsItsBiasOnReset) {
-  AttitudeFilter filter{EstimationConfig{}};
+  AttitudeFilter filter{EstimationConfig{}, kTick};
   for (int i = 0; i < 2; ++i) {
     filter.update({Vec3(0.01, 0.0, 0.0), gravity_B(Mat3::Identity()), Vec3::Zero(), true}, kTick);
   }

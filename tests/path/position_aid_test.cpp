@@ -103,6 +103,25 @@ TEST(PositionAidOffset, AMeasurementOlderThanItsMemoryIsNotUsed) {
   EXPECT_EQ(robot.last, Vec2::Zero());
 }
 
+TEST(PositionAidOffset, RemembersAsLongAtAFastRate) {
+  PositionAidOffset offset(without_ramp());
+  constexpr double kFastTick = 0.0005, kAge = 0.9;  // s
+  const Vec2 velocity(0.5, 0.2);
+  Vec2 last = Vec2::Zero();
+  for (int i = 0; i < 40000; ++i) {
+    const double time = i * kFastTick;
+    std::optional<PositionAid> aid;
+    if (i % 200 == 0) {
+      aid.emplace();
+      aid->time = time - kAge;
+      aid->p_WB.head<2>() = aid->time * velocity + kDrift;
+    }
+    last = offset.update(aid, time * velocity, time, kFastTick);
+  }
+  // Measurements begin to be used after 0.9 s; exp(-19.1 s / 4 s) is still to come.
+  EXPECT_LT(distance(last, kDrift), 0.01 * kDrift.norm());
+}
+
 TEST(PositionAidOffset, HoldsTheLastOffsetWhenTheAidIsLost) {
   const AidConfig config = without_ramp();
   Watched robot(config);

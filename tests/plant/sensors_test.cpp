@@ -102,6 +102,18 @@ TEST(Sensors, HaveTheConfiguredNoiseAndAConstantBias) {
   EXPECT_LT(gyro_mean.norm(), 8e-4);
 }
 
+TEST(Sensors, KeepTheDensityOfTheInertialNoiseAtAnyRate) {
+  SensorConfig config;
+  config.accelerometer_bias = config.gyro_bias = 0.0;
+  PlantTruth truth;
+  truth.a_WB_W.z() = -kGravity;  // free fall: the accelerometer shows its noise
+  const SensorReading nominal = Sensors(config, 1, 0.002).sample(truth, {});
+  const SensorReading slow = Sensors(config, 1, 0.008).sample(truth, {});
+  EXPECT_NEAR(slow.w_WB_B.norm() / nominal.w_WB_B.norm(), 0.5, 1e-12);
+  EXPECT_NEAR(slow.specific_force_B.norm() / nominal.specific_force_B.norm(), 0.5, 1e-12);
+  EXPECT_EQ(slow.joint_position[Leg::kFR], nominal.joint_position[Leg::kFR]);
+}
+
 TEST(Sensors, FollowTheSeed) {
   Config config = ideal_config();
   config.plant.sensors.ideal = false;
@@ -120,7 +132,7 @@ TEST(Sensors, FollowTheSeed) {
 
 /// Contact flags of a foot that touches down at 0.1 s, at 500 Hz for 1 s.
 std::vector<bool> flags_of_a_touchdown(const SensorConfig& config, std::uint64_t seed = 1) {
-  Sensors sensors(config, seed);
+  Sensors sensors(config, seed, kTick);
   std::vector<bool> flags;
   for (int tick = 0; tick < 500; ++tick) {
     PlantTruth truth;
@@ -161,7 +173,7 @@ TEST(ContactFlags, AreWrongAsOftenAsConfigured) {
 
 /// What the position aid says of a trunk that walks along x at 1 m/s, tick by tick at 500 Hz.
 std::vector<std::optional<PositionAid>> aid_of_a_walk(const SensorConfig& config, double duration) {
-  Sensors sensors(config, 3);
+  Sensors sensors(config, 3, kTick);
   std::vector<std::optional<PositionAid>> aids;
   for (int tick = 0; tick * kTick < duration; ++tick) {
     PlantTruth truth;

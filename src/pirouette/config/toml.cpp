@@ -1,6 +1,7 @@
 #include "pirouette/config/toml.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <map>
 #include <string_view>
@@ -118,6 +119,18 @@ bool parse(const toml::node& node, Enum& out) {
   return true;
 }
 
+/// A parameter that counted control ticks, and the time that stands for it.
+struct Renamed {
+  std::string_view from, to;
+};
+constexpr std::array kRenamed = {
+    Renamed{"mpc.ticks_per_solve", "mpc.solve_period"},
+    Renamed{"estimation.contact_debounce", "estimation.contact_debounce_time"},
+    Renamed{"estimation.gyro_rest_samples", "estimation.gyro_rest_time"},
+    Renamed{"safety.max_bad_readings", "safety.max_bad_reading_time"},
+    Renamed{"safety.max_repeated_samples", "safety.max_repeat_time"},
+};
+
 /// Reads a layer over a Config. A wrong value leaves the lower layer's in place and is recorded.
 class LayerReader {
  public:
@@ -168,6 +181,12 @@ class LayerReader {
 
   void report_unknown(const toml::node& node, const std::string& key,
                       const std::vector<std::string>& names) {
+    const auto renamed = std::find_if(kRenamed.begin(), kRenamed.end(),
+                                      [&](const Renamed& r) { return r.from == key; });
+    if (renamed != kRenamed.end()) {
+      report(node, key, "unknown key; it is " + std::string(renamed->to) + " now, in s");
+      return;
+    }
     std::vector<std::string> candidates = list_keys();
     for (const ParameterGroup& group : describe(Config{})) {
       if (!group.key.empty()) candidates.push_back(group.key);

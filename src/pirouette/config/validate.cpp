@@ -56,16 +56,15 @@ Errors validate(const Config& config) {
           " m; allowed: up to terrain.step_residual = ", config.terrain.step_residual, " m");
 
   const SensorConfig& sensors = config.plant.sensors;
-  const double remembered = static_cast<double>(AidConfig::kHistory - 1) * control_period;
+  const double remembered = static_cast<double>(AidConfig::kHistory - 1) *
+                            std::max(control_period, AidConfig::kMinSpacing);
   require(sensors.aid_rate == 0.0 || sensors.aid_delay <= remembered, "plant.sensors.aid_delay",
           "given ", sensors.aid_delay, " s; allowed: up to ", remembered,
           " s, as long as the controller remembers");
 
-  const double solve_period = config.mpc.ticks_per_solve * control_period;
   const double horizon = config.mpc.horizon * config.mpc.step_share * config.gait.period;
-  require(solve_period <= horizon, "mpc.ticks_per_solve", "given ", config.mpc.ticks_per_solve,
-          ", a solution every ", solve_period, " s; allowed: within the horizon of ", horizon,
-          " s");
+  require(config.mpc.solve_period <= horizon, "mpc.solve_period", "given ", config.mpc.solve_period,
+          " s; allowed: within the horizon of ", horizon, " s");
   return errors;
 }
 

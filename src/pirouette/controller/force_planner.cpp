@@ -42,7 +42,7 @@ ContactForces ForcePlanner::update(const ForcePlannerInput& in) noexcept {
   }
   solve_us_ = 0.0;
   if (ticks_until_solve_-- > 0 && !changed) return forces_;
-  ticks_until_solve_ = config_.ticks_per_solve - 1;
+  ticks_until_solve_ = ticks_per_solve_ - 1;
   solved_contacts_ = contacts;
   const Stopwatch watch;
   const ContactForces forces = mpc_.update(mpc_input(in));

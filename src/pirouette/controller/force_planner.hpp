@@ -1,6 +1,7 @@
 // Contact forces of the MPC: when it is solved, its input, and the forces between solutions.
 #pragma once
 
+#include "pirouette/controller/tick_clock.hpp"
 #include "pirouette/gait/gait_clock.hpp"
 #include "pirouette/lowlevel/convex_mpc.hpp"
 #include "pirouette/lowlevel/mpc_config.hpp"
@@ -25,14 +26,15 @@ struct ForcePlannerInput {
   const BodyReference& reference;  ///< body reference
 };
 
-/// Solves the MPC every mpc.ticks_per_solve ticks and whenever the contact set changes.
+/// Solves every mpc.solve_period and whenever the contact set changes.
 class ForcePlanner {
  public:
-  /// `standing_period` (s) replaces the stride's period while the robot does not walk; `com_height`
-  /// (m) above the plane; `mass` (kg); `inertia_B` (kg m^2) about the CoM, trunk axes.
-  ForcePlanner(const MpcConfig& config, double standing_period, double com_height, double mass,
-               const Mat3& inertia_B)
+  /// `control_period` (s) is that of update(). `standing_period` (s) stands in for the stride's
+  /// while the robot does not walk; `com_height` in m above the plane.
+  ForcePlanner(const MpcConfig& config, double control_period, double standing_period,
+               double com_height, double mass, const Mat3& inertia_B)
       : config_(config),
+        ticks_per_solve_(std::max(1, ticks_in(config.solve_period, control_period))),
         standing_period_(standing_period),
         com_height_(com_height),
         mpc_(config, mass, inertia_B) {}
@@ -48,8 +50,8 @@ class ForcePlanner {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, standing_period, com_height, mpc, failures, ticks_until_solve, solved_contacts,
-           forces, solve_us] = self;
+    auto& [config, ticks_per_solve, standing_period, com_height, mpc, failures, ticks_until_solve,
+           solved_contacts, forces, solve_us] = self;
     visit(failures, ticks_until_solve, solved_contacts, forces);
   }
 
@@ -57,6 +59,7 @@ class ForcePlanner {
   MpcInput mpc_input(const ForcePlannerInput& in) const noexcept;
 
   MpcConfig config_;
+  int ticks_per_solve_;
   double standing_period_;
   double com_height_;
   ConvexMpc mpc_;

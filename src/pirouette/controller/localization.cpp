@@ -1,17 +1,34 @@
 #include "pirouette/controller/localization.hpp"
 
+#include "pirouette/controller/tick_clock.hpp"
+
 namespace pirouette {
+
+namespace {
+
+/// The measurement variances are those of kVariancesAt readings a second. What a second of readings
+/// tells is the same at any rate.
+EstimationConfig at_rate(EstimationConfig config, double rate) {
+  constexpr double kVariancesAt = 500.0;  // Hz
+  const double factor = rate / kVariancesAt;
+  config.measurement_position *= factor;
+  config.measurement_velocity *= factor;
+  config.measurement_height *= factor;
+  return config;
+}
+
+}  // namespace
 
 Localization::Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs)
     : config_(config),
       legs_(legs),
       foot_(config.foot.model, legs[Leg::kFR].foot_radius),
-      attitude_filter_(config.estimation),
-      odometry_filter_(config.estimation),
+      attitude_filter_(config.estimation, 1.0 / config.control.rate),
+      odometry_filter_(at_rate(config.estimation, config.control.rate)),
       creep_(config.creep),
       tilt_bias_(config.estimation.tilt_bias_time),
-      flags_(PerLeg<ContactDebounce>::filled(ContactDebounce(config.estimation.contact_debounce))) {
-}
+      flags_(PerLeg<ContactDebounce>::filled(ContactDebounce(std::max(
+          1, ticks_in(config.estimation.contact_debounce_time, 1.0 / config.control.rate))))) {}
 
 void Localization::reset(const BasePose& start) {
   attitude_filter_.reset(start.R_WB);

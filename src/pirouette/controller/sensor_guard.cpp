@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pirouette/controller/tick_clock.hpp"
+
 namespace pirouette {
 
 namespace {
@@ -35,7 +37,7 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
     ++bad_inputs_;
     input_.sensors.time += period_;
     input_.sensors.aid.reset();  // heard once
-    return started_ && bad_inputs_ <= config_.max_bad_readings;
+    return started_ && bad_inputs_ <= ticks_in(config_.max_bad_reading_time, period_);
   }
   bad_inputs_ = 0;
   if (started_) {
@@ -55,7 +57,8 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
   started_ = true;
   const auto blind_legs =
       std::count(input_.encoder_stuck.begin(), input_.encoder_stuck.end(), true);
-  return std::max(gyro_repeats_, accelerometer_repeats_) <= config_.max_repeated_samples &&
+  return std::max(gyro_repeats_, accelerometer_repeats_) <=
+             ticks_in(config_.max_repeat_time, period_) &&
          blind_legs <= 1;
 }
 
@@ -67,7 +70,8 @@ bool SensorGuard::is_outlier(const SensorReading& sensors) const noexcept {
 
 void SensorGuard::watch_imu(const SensorReading& sensors, bool walking) noexcept {
   // What stays there for long is no spike: the robot was hit.
-  const bool spike = is_outlier(sensors) && outliers_ < config_.max_bad_readings;
+  const bool spike =
+      is_outlier(sensors) && outliers_ < ticks_in(config_.max_bad_reading_time, period_);
   outliers_ = spike ? outliers_ + 1 : 0;
   const auto count = [&](int& repeats, const Vec3& now, const Vec3& before) {
     repeats = walking && now == before ? repeats + 1 : 0;

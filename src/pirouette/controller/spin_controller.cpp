@@ -112,7 +112,8 @@ struct SpinController::Impl {
         motion_planner(c.path, c.aid, c.control.rate),
         foot_planner(c.foothold, c.gait, c.body.height, localization.foot(), model.legs(), stance),
         com_planner(c.com),
-        force_planner(c.mpc, c.gait.period, com_height, model.mass(), model.inertia(stance.q)),
+        force_planner(c.mpc, 1.0 / c.control.rate, c.gait.period, com_height, model.mass(),
+                      model.inertia(stance.q)),
         joint_control(c.wbc, c.mpc, c.joint, model.legs(), localization.foot().radius()) {
     reset(BasePose{});
   }
@@ -302,8 +303,8 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
     return last.command;
   }
   if (!finite) stand_down(ControllerStatus::kBadCommand);
-  if (std::max(force_planner.failures(), joint_control.failures()) >
-      config.safety.max_solver_failures) {
+  if (force_planner.failures() > config.safety.max_solver_failures ||
+      joint_control.failures() > ticks_in(config.safety.max_hold_time, 1.0 / config.control.rate)) {
     stand_down(ControllerStatus::kSolverFailed);
   }
   if (!gyro_agrees) stand_down(ControllerStatus::kGyroAgainstLegs);

@@ -2,12 +2,18 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace pirouette {
 
-/// Measures the period from the times of the readings, clamped to between half and ten nominal
-/// periods.
+/// Ticks of `period` (s) that are nearest to `time` (s).
+inline int ticks_in(double time, double period) {
+  return static_cast<int>(std::lround(time / period));
+}
+
+/// Measures the period from the readings' own times. A reading that is early, late or stamped
+/// wrongly counts as half to ten nominal periods.
 class TickClock {
  public:
   /// `nominal_period` in s.

@@ -34,12 +34,21 @@ struct Attitude {
 /// latter is omega x v for every point of the body, which is subtracted; the gait's part averages
 /// out over the filter's time constant. An accelerometer bias becomes a tilt error of bias / g.
 ///
-/// A robot at rest sags and settles faster than a gyro's bias. Its feet measure this rotation: the
-/// gyro bias is the slope over the time at rest of the gyro's integral minus that rotation.
+/// A robot at rest sags and settles by more than a gyro's bias. Its feet tell how it turned in
+/// truth: the bias is the slope, over the time at rest, of what the gyro's integral adds to that.
+/// It is shrunk to the prior of no bias, until it is many deviations from it: then the prior is
+/// wrong, and the measurement counts alone. Once a rest has told the bias, the prior is that one
+/// and is not overruled again.
+///
+/// A robot that is turned together with the ground under its feet is not at rest. The rest begins
+/// anew, with the bias from before it, when what the gyro adds is no straight line over time, when
+/// gyro and specific force turn together, or when the slope is more than any gyro's bias. A steady
+/// turn about the vertical that is slower than that is what a bias looks like.
 class AttitudeFilter {
  public:
-  /// Starts level at yaw 0, without gyro bias.
-  explicit AttitudeFilter(const EstimationConfig& config) : config_(config) {}
+  /// `period` (s) is that of update().
+  AttitudeFilter(const EstimationConfig& config, double period)
+      : config_(config), prior_samples_(config.gyro_rest_time / period) {}
 
   /// Attitude after one tick of `dt` (s).
   Attitude update(const AttitudeInput& in, double dt) noexcept;
@@ -50,25 +59,46 @@ class AttitudeFilter {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, q_WB, gyro_bias, rest] = self;
-    visit(q_WB, gyro_bias, rest);
+    auto& [config, prior_samples, q_WB, gyro_bias, bias_known, turned, rest] = self;
+    visit(q_WB, gyro_bias, bias_known, turned, rest);
   }
 
  private:
   EstimationConfig config_;
+  double prior_samples_;  ///< at rest, that the prior of the gyro bias is worth
   Quat q_WB_ = Quat::Identity();
   Vec3 gyro_bias_ = Vec3::Zero();
-  void calibrate(const AttitudeInput& in, double dt) noexcept;
+  bool bias_known_ = false;  ///< from an earlier rest
+  bool turned_ = false;      ///< and not seen at rest since
 
+  /// Least-squares line of a vector over time.
+  struct Line {
+    double samples = 0.0, sum_t = 0.0, sum_tt = 0.0;
+    Vec3 sum_x = Vec3::Zero(), sum_tx = Vec3::Zero(), sum_xx = Vec3::Zero();
+
+    void add(double time, const Vec3& x) noexcept;
+    double spread() const noexcept;    ///< s^2, samples^2 times the variance of the times
+    Vec3 slope() const noexcept;       ///< for a spread above 0
+    double variance() const noexcept;  ///< about the line, sum of the axes
+  };
   struct Rest {
     PerLeg<Vec3> p_BF{};               ///< m, at its beginning
     Vec3 bias_before = Vec3::Zero();   ///< rad/s
+    double time = 0.0;                 ///< s
     Vec3 turn_by_gyro = Vec3::Zero();  ///< rad
-    double samples = 0.0, time = 0.0;  ///< -, s
-    double sum_t = 0.0, sum_tt = 0.0;  ///< of the regression on time
-    Vec3 sum_x = Vec3::Zero(), sum_tx = Vec3::Zero();
+    Vec3 turn_by_bias = Vec3::Zero();  ///< rad, that was taken off it
+    Line added;                        ///< rad, what the gyro adds to the turn over the feet
+    Line specific_force_B;             ///< m/s^2
+    Vec3 last_w_WB_B = Vec3::Zero();   ///< rad/s, gyro
+    double sum_change2 = 0.0;          ///< (rad/s)^2, from reading to reading
+    bool overrules_prior = false;
   };
   Rest rest_;
+
+  void record_rest(const AttitudeInput& in, double dt) noexcept;
+  void calibrate(const AttitudeInput& in, double dt) noexcept;
+  bool is_turned() const noexcept;
+  bool contradicts_prior(const Vec3& measured) const noexcept;
 };
 
 }  // namespace pirouette

@@ -35,9 +35,10 @@ struct EstimationConfig {
   double velocity_jump = 0.1;
   double attitude_time_constant = 4.0;
   double gyro_bias_time_constant = 60.0;
-  double gyro_rest_samples = 600.0;
+  double gyro_rest_time = 1.2;
+  double gyro_bias_prior = 2e-4;
   double tilt_bias_time = 20.0;
-  int contact_debounce = 3;
+  double contact_debounce_time = 0.006;
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
@@ -49,11 +50,13 @@ struct EstimationConfig {
     v(s.process_foot, "process_foot", "m^2/s", Range{1e-12, 100.0},
       "Process noise of a foot on the ground.");
     v(s.measurement_position, "measurement_position", "m^2", Range{1e-12, 100.0},
-      "Variance of a foot's measured position relative to the body.");
+      "Variance of a foot's measured position relative to the body, of readings at 500 Hz: it "
+      "grows "
+      "with control.rate.");
     v(s.measurement_velocity, "measurement_velocity", "(m/s)^2", Range{1e-12, 100.0},
-      "Variance of the body velocity that a foot reports.");
+      "Variance of the body velocity that a foot reports, at 500 Hz.");
     v(s.measurement_height, "measurement_height", "m^2", Range{1e-12, 100.0},
-      "Variance of a foot's height above the terrain estimate.");
+      "Variance of a foot's height above the terrain estimate, at 500 Hz.");
     v(s.swing_noise_factor, "swing_noise_factor", "1", Range{1.0, 1e6},
       "Added noise of a foot whose trust is only beginning or ending, as a multiple.");
     v(s.trust_window, "trust_window", "1", Range{0.0, 0.5},
@@ -66,13 +69,18 @@ struct EstimationConfig {
       "Time constant with which gravity corrects roll and pitch.");
     v(s.gyro_bias_time_constant, "gyro_bias_time_constant", "s", Range{1.0, 1e5},
       "Time constant of the gyro-bias estimate while walking.");
-    v(s.gyro_rest_samples, "gyro_rest_samples", "samples", Range{0.0, 1e6},
-      "Weight of the prior of no gyro bias, in samples at rest: (noise / bias)^2.");
+    v(s.gyro_rest_time, "gyro_rest_time", "s", Range{0.0, 2000.0},
+      "Time at rest that the prior of no gyro bias is worth: density of the noise over variance "
+      "of the bias.");
+    v(s.gyro_bias_prior, "gyro_bias_prior", "rad/s", Range{0.0, 10.0},
+      "Deviation of that prior. A first rest whose bias is many of it, and of the noise, from none "
+      "is believed without the prior.");
     v(s.tilt_bias_time, "tilt_bias_time", "s", Range{0.0, 1000.0},
       "Memory of the tilt error that turns with the trunk, seen against the terrain plane; 0: "
       "off.");
-    v(s.contact_debounce, "contact_debounce", "ticks", Range{1, 100},
-      "A contact flag is used when it has been the same for this long.");
+    v(s.contact_debounce_time, "contact_debounce_time", "s", Range{0.0, 0.2},
+      "A contact flag counts when it has been the same for this long, to the nearest control "
+      "tick; at least one.");
   }
 };
 

@@ -10,7 +10,7 @@ namespace pirouette {
 /// Parameters `mpc.*`.
 struct MpcConfig {
   int horizon = 16;
-  int ticks_per_solve = 12;
+  double solve_period = 0.024;
   double step_share = 0.0625;
   std::array<double, 3> weight_rpy = {3.0, 3.0, 10.0};
   std::array<double, 3> weight_position = {2.0, 2.0, 50.0};
@@ -25,8 +25,8 @@ struct MpcConfig {
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
     v(s.horizon, "horizon", "steps", Range{2, 24}, "Prediction horizon.");
-    v(s.ticks_per_solve, "ticks_per_solve", "ticks", Range{1, 100},
-      "Control ticks between two solutions.");
+    v(s.solve_period, "solve_period", "s", Range{0.0, 0.2},
+      "Time between two solutions, to the nearest control tick; at least one.");
     v(s.step_share, "step_share", "1", Range{0.01, 0.5},
       "Length of a prediction step as a share of the gait period.");
     v(s.weight_rpy, "weight_rpy", "1/rad^2", Range{0.0, 1e6}, "Weight of roll, pitch, yaw.");

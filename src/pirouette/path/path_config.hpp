@@ -83,7 +83,9 @@ struct AidConfig {
   double timeout = 2.0;
   double max_offset = 0.5;
 
-  static constexpr std::size_t kHistory = 512;  ///< ticks, largest age of a measurement
+  /// Poses that are remembered; a measurement may be as old as the oldest of them.
+  static constexpr std::size_t kHistory = 512;
+  static constexpr double kMinSpacing = 0.0019;  ///< s, from one of them to the next
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {

@@ -22,10 +22,20 @@ std::optional<Vec2> PositionAidOffset::odometry_at(double time) const noexcept {
   return std::nullopt;
 }
 
+/// The newest pose is always kept; it replaces one that is too close behind the one before it.
+void PositionAidOffset::record(double time, const Vec2& p_WB) noexcept {
+  const auto past_time = [&](std::size_t back) {
+    return history_[(recorded_ - back) % kHistory].time;
+  };
+  const bool crowded = recorded_ >= 2 && past_time(1) - past_time(2) < AidConfig::kMinSpacing;
+  if (!crowded) ++recorded_;
+  history_[(recorded_ - 1) % kHistory] = {time, p_WB};
+}
+
 Vec2 PositionAidOffset::update(const std::optional<PositionAid>& aid, const Vec2& p_WB, double time,
                                double dt) noexcept {
   if (!config_.enabled) return Vec2::Zero();
-  history_[recorded_++ % kHistory] = {time, p_WB};
+  record(time, p_WB);
   silent_for_ += dt;
   const std::optional<Vec2> then = aid ? odometry_at(aid->time) : std::nullopt;
   if (!then) return offset_;

@@ -37,6 +37,7 @@ class PositionAidOffset {
     double time = 0.0;
     Vec2 p_WB = Vec2::Zero();
   };
+  void record(double time, const Vec2& p_WB) noexcept;
   std::optional<Vec2> odometry_at(double time) const noexcept;
 
   static constexpr std::size_t kHistory = AidConfig::kHistory;

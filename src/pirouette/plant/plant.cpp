@@ -131,7 +131,7 @@ struct Plant::Impl {
         model(std::move(scene.model)),
         map(scene.map),
         data(mj_makeData(model.get())),
-        sensors(config.sensors, setup.seed),
+        sensors(config.sensors, setup.seed, setup.period),
         faults(config.faults, setup.seed, setup.period),
         command_delay(delay),
         steps_per_tick(steps),

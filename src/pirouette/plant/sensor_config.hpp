@@ -32,10 +32,12 @@ struct SensorConfig {
     v(s.joint_velocity_noise, "joint_velocity_noise", "rad/s", Range{0.0, 10.0},
       "Joint velocity, white, per sample.");
     v(s.accelerometer_noise, "accelerometer_noise", "m/s^2", Range{0.0, 100.0},
-      "Accelerometer, white, per sample and axis.");
+      "Accelerometer, white, per axis and sample at 500 Hz; its density is the same at any "
+      "control.rate.");
     v(s.accelerometer_bias, "accelerometer_bias", "m/s^2", Range{0.0, 10.0},
       "Accelerometer bias: standard deviation of the draw per seed and axis.");
-    v(s.gyro_noise, "gyro_noise", "rad/s", Range{0.0, 10.0}, "Gyro, white, per sample and axis.");
+    v(s.gyro_noise, "gyro_noise", "rad/s", Range{0.0, 10.0},
+      "Gyro, white, per axis and sample at 500 Hz; its density is the same at any control.rate.");
     v(s.gyro_bias, "gyro_bias", "rad/s", Range{0.0, 1.0},
       "Gyro bias: standard deviation of the draw per seed and axis.");
     v(s.contact_flags, "contact_flags", "The feet report contact.");

@@ -9,7 +9,13 @@ namespace {
 
 constexpr double kRounding = 1e-9;  ///< s, of a time that counts control periods
 
-SensorConfig effective(SensorConfig config) {
+/// What acts at samples every `period` (s). An inertial sensor averages between two readings: of
+/// its white noise the density is given, not the deviation.
+SensorConfig effective(SensorConfig config, double period) {
+  constexpr double kNoisePeriod = 0.002;  // s, for which the deviations are given
+  const double scale = std::sqrt(kNoisePeriod / period);
+  config.accelerometer_noise *= scale;
+  config.gyro_noise *= scale;
   if (!config.ideal) return config;
   config.encoder_noise = config.joint_velocity_noise = 0.0;
   config.accelerometer_noise = config.accelerometer_bias = 0.0;
@@ -70,8 +76,8 @@ std::optional<PositionAid> PositionAidSource::sample(double time, const BaseTrut
   return arrived;
 }
 
-Sensors::Sensors(const SensorConfig& config, std::uint64_t seed)
-    : config_(effective(config)),
+Sensors::Sensors(const SensorConfig& config, std::uint64_t seed, double period)
+    : config_(effective(config, period)),
       noise_(seed, RandomPurpose::kSensorNoise),
       contact_flags_(config_, seed),
       aid_(config_, seed) {

@@ -61,8 +61,8 @@ class PositionAidSource {
 /// All sensors of the robot.
 class Sensors {
  public:
-  /// Draws the biases of this `seed`.
-  Sensors(const SensorConfig& config, std::uint64_t seed);
+  /// Draws the biases of this `seed`. `period` (s) is that of sample().
+  Sensors(const SensorConfig& config, std::uint64_t seed, double period);
 
   /// One sample of every sensor; time never falls from call to call. `normal_force` (N) on each
   /// foot.
