@@ -34,7 +34,8 @@ class Standing {
 
   void estimate() {
     out = localization.estimate(
-        {sensors, out.state, contacts, gait, plane, ground, f_W, JointCommand{}}, model, kTick);
+        {sensors, out.state, contacts, gait, plane, ground, f_W, false, JointCommand{}}, model,
+        kTick);
   }
   void find_contacts() {
     contacts = localization.find_contacts(

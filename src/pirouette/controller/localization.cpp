@@ -117,8 +117,12 @@ Localization::Trunk Localization::estimate_trunk(const LocalizationInput& in,
                                                  const PerLeg<FootState>& feet,
                                                  const CreepEstimate& creep, double dt) noexcept {
   const SensorReading& sensors = in.sensors;
-  AttitudeInput attitude_in{
-      sensors.w_WB_B, sensors.specific_force_B, in.last_state.v_WB_W, !in.last_gait.walking, {}};
+  AttitudeInput attitude_in;
+  attitude_in.w_WB_B = sensors.w_WB_B;
+  attitude_in.specific_force_B = sensors.specific_force_B;
+  attitude_in.v_WB_W = in.last_state.v_WB_W;
+  attitude_in.at_rest = !in.last_gait.walking;
+  attitude_in.turns_on_purpose = in.turns_on_purpose;
   for (const Leg leg : kLegs) attitude_in.p_BF[leg] = feet[leg].p_BF;
   const Attitude attitude = attitude_filter_.update(attitude_in, dt);
   if (in.last_gait.walking && in.last_ground.known && !in.last_ground.stepped) {

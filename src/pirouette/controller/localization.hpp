@@ -31,6 +31,7 @@ struct LocalizationInput {
   const TerrainPlane& last_plane;     ///< estimated ground plane
   const GroundEstimate& last_ground;  ///< kind of ground
   const PerLeg<Vec3>& last_f_W;  ///< N, forces of the whole-body control on the robot, world axes
+  bool turns_on_purpose;         ///< the trunk turns over its feet: StandingCheck
   const JointCommand& last_command;  ///< joint command sent
 };
 

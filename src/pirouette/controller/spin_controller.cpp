@@ -234,7 +234,7 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
 
   const auto [state, feet, creep, tilt_bias_H] =
       localization.estimate({sensors, last.state, last.contacts, last.gait, last.plane, last.ground,
-                             last.wbc.f_W, last.command},
+                             last.wbc.f_W, standing_check.turns(), last.command},
                             model, dt);
   if (standing_check.state() == SelfCheck::kRunning) {
     standing_check.update({sensors, feet, last.command});

@@ -15,7 +15,7 @@ namespace {
 constexpr double kSettleTime = 0.1;    // s, in which the robot sags into its stance
 constexpr double kStillTime = 0.2;     // s, watched standing still
 constexpr double kTurnTime = 0.2;      // s, for the turn about one axis
-constexpr double kTurnAngle = 0.02;    // rad, its largest
+constexpr double kTurnAngle = 0.01;    // rad, its largest
 constexpr double kStiffness = 2.0;     // of a joint, in the weight times the leg's length per rad
 constexpr double kDampingTime = 0.05;  // s, damping over stiffness
 constexpr int kMaxTries = 20;          // of standing still: 6 s
@@ -122,6 +122,10 @@ void StandingCheck::update(const StandingCheckInput& in) noexcept {
   hold(turn_at((ticks_ - turn_from) * period_));
 }
 
+bool StandingCheck::turns() const noexcept {
+  return state_ == SelfCheck::kRunning && ticks_ >= ticks_of(kSettleTime) + ticks_of(kStillTime);
+}
+
 void StandingCheck::begin(const StandingCheckInput& in) noexcept {
   stance_.q = in.sensors.joint_position;
   Vec2 centre = Vec2::Zero();
@@ -164,14 +168,17 @@ void StandingCheck::hold(const Turn& turn) noexcept {
   }
 }
 
-/// From 0 to kTurnAngle and back, without a jump of the rate, about x, then y, then z.
+/// Left, right and back, without a jump of the rate, about x, then y, then z: both ways, so that
+/// what the feet slip one way they slip back.
 StandingCheck::Turn StandingCheck::turn_at(double time) const noexcept {
   Turn turn;
   if (time < 0.0 || time >= 3.0 * kTurnTime) return turn;
+  constexpr double kLargest = 1.299038105676658;  // of sin x (1 - cos x): 3 sqrt(3) / 4
   const auto axis = static_cast<Eigen::Index>(time / kTurnTime);
   const double phase = 2.0 * kPi * (time / kTurnTime - static_cast<double>(axis));
-  turn.angle_B[axis] = kTurnAngle * (1.0 - std::cos(phase)) / 2.0;
-  turn.rate_B[axis] = kTurnAngle * kPi / kTurnTime * std::sin(phase);
+  const double angle = kTurnAngle / kLargest;
+  turn.angle_B[axis] = angle * std::sin(phase) * (1.0 - std::cos(phase));
+  turn.rate_B[axis] = angle * 2.0 * kPi / kTurnTime * (std::cos(phase) - std::cos(2.0 * phase));
   return turn;
 }
 

@@ -34,6 +34,8 @@ class StandingCheck {
   void update(const StandingCheckInput& in) noexcept;
 
   SelfCheck state() const noexcept { return state_; }
+  /// The trunk turns over its feet.
+  bool turns() const noexcept;
   /// What holds and turns the robot, while state() is kRunning.
   const JointCommand& command() const noexcept { return command_; }
 

@@ -56,15 +56,17 @@ double AttitudeFilter::Line::variance() const noexcept {
 }
 
 void AttitudeFilter::record_rest(const AttitudeInput& in, double dt) noexcept {
-  if (rest_.added.samples == 0.0) {
+  if (rest_.time == 0.0) {
     rest_.p_BF = in.p_BF;
     rest_.bias_before = gyro_bias_;
-  } else {
+  } else if (!in.turns_on_purpose) {
     rest_.sum_change2 += (in.w_WB_B - rest_.last_w_WB_B).squaredNorm();
   }
   rest_.last_w_WB_B = in.w_WB_B;
   rest_.time += dt;
   rest_.turn_by_gyro += dt * in.w_WB_B;
+  // Feet that roll under a turning trunk are no measure of a bias; before and after they are.
+  if (in.turns_on_purpose) return;
   rest_.added.add(rest_.time, rest_.turn_by_gyro - turn_over_feet(rest_.p_BF, in.p_BF));
   if (rest_.time > kSettleTime) rest_.specific_force_B.add(rest_.time, in.specific_force_B);
 }
@@ -89,14 +91,15 @@ bool AttitudeFilter::is_turned() const noexcept {
 bool AttitudeFilter::contradicts_prior(const Vec3& measured) const noexcept {
   const double n = rest_.added.samples;
   const double noise2 = rest_.sum_change2 / (2.0 * 3.0 * (n - 1.0));
-  const double deviation2 = square(config_.gyro_bias_prior) + 1.2 * noise2 / n +
+  const double readings = rest_.time / period_;
+  const double deviation2 = square(config_.gyro_bias_prior) + 1.2 * noise2 / readings +
                             n * rest_.added.variance() / (3.0 * rest_.added.spread());
   return (measured - rest_.bias_before).squaredNorm() > square(kManyDeviations) * deviation2;
 }
 
 void AttitudeFilter::calibrate(const AttitudeInput& in, double dt) noexcept {
   record_rest(in, dt);
-  if (rest_.added.spread() <= 0.0) return;
+  if (in.turns_on_purpose || rest_.added.spread() <= 0.0) return;
   const Vec3 slope = rest_.added.slope();
   if (rest_.time >= kMinRest) {
     if (is_turned()) {
@@ -115,8 +118,8 @@ void AttitudeFilter::calibrate(const AttitudeInput& in, double dt) noexcept {
     q_WB_ = q_WB_ * Quat(exp_so3(rest_.turn_by_bias - (rest_.time - dt) * slope));
   }
   // Shrunk to what was known before (nothing: no bias) while there are few samples.
-  const double samples = rest_.added.samples;
-  const double share = rest_.overrules_prior ? 1.0 : samples / (samples + prior_samples_);
+  const double share =
+      rest_.overrules_prior ? 1.0 : rest_.time / (rest_.time + config_.gyro_rest_time);
   gyro_bias_ = rest_.bias_before + share * (slope - rest_.bias_before);
 }
 

@@ -13,6 +13,7 @@ struct AttitudeInput {
   Vec3 specific_force_B = Vec3::Zero();  ///< m/s^2, accelerometer
   Vec3 v_WB_W = Vec3::Zero();            ///< m/s, last velocity estimate of the trunk origin
   bool at_rest = false;                  ///< the robot stands on four feet
+  bool turns_on_purpose = false;         ///< at rest, but the trunk turns over its feet: self-check
   PerLeg<Vec3> p_BF{};                   ///< m, sphere centres in trunk axes; used at rest
 };
 
@@ -48,7 +49,7 @@ class AttitudeFilter {
  public:
   /// `period` (s) is that of update().
   AttitudeFilter(const EstimationConfig& config, double period)
-      : config_(config), prior_samples_(config.gyro_rest_time / period) {}
+      : config_(config), period_(period) {}
 
   /// Attitude after one tick of `dt` (s).
   Attitude update(const AttitudeInput& in, double dt) noexcept;
@@ -59,13 +60,13 @@ class AttitudeFilter {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, prior_samples, q_WB, gyro_bias, bias_known, turned, rest] = self;
+    auto& [config, period, q_WB, gyro_bias, bias_known, turned, rest] = self;
     visit(q_WB, gyro_bias, bias_known, turned, rest);
   }
 
  private:
   EstimationConfig config_;
-  double prior_samples_;  ///< at rest, that the prior of the gyro bias is worth
+  double period_;  ///< s, of update()
   Quat q_WB_ = Quat::Identity();
   Vec3 gyro_bias_ = Vec3::Zero();
   bool bias_known_ = false;  ///< from an earlier rest

@@ -10,7 +10,7 @@
 namespace pirouette {
 namespace {
 
-namespace text = words::comparison;
+namespace text = report_words::comparison;
 
 /// Whether what was printed may hold for a trial at `levels`.
 bool applies(const PrintedResult& printed, const Experiment& experiment,

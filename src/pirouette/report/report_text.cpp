@@ -14,7 +14,7 @@
 namespace pirouette {
 namespace {
 
-namespace text = words::comparison;
+namespace text = report_words::comparison;
 
 constexpr const char* kBias = "com.body_bias_mm_s";
 constexpr const char* kBiasCircle = "com.bias_circle_mm";
@@ -44,13 +44,13 @@ class MarkdownWriter {
       : report_(report), experiment_(*report.experiment) {}
 
   std::string write() {
-    out_ << fill(words::kTitle, {{"title", markdown(experiment_.title)},
-                                 {"version", version()},
-                                 {"commit", commit()},
-                                 {"mujoco", physics_version()},
-                                 {"size", size()}});
+    out_ << fill(report_words::kTitle, {{"title", markdown(experiment_.title)},
+                                        {"version", version()},
+                                        {"commit", commit()},
+                                        {"mujoco", physics_version()},
+                                        {"size", size()}});
     if (!experiment_.note.empty()) {
-      out_ << fill(words::kNote, {{"note", without_html(experiment_.note)}});
+      out_ << fill(report_words::kNote, {{"note", without_html(experiment_.note)}});
     }
     for (const std::string& profile : profiles()) write_profile(profile);
     write_bounds();
@@ -372,7 +372,7 @@ class MarkdownWriter {
                    const std::string& metric) {
     const Spread* before = nullptr;
     std::vector<std::string> rungs;
-    std::string verdict = words::kHolds;
+    std::string verdict = report_words::kHolds;
     bool complete = true;
     for (const std::string& label : experiment_.ladder) {
       const auto entry = std::find_if(entries_.begin(), entries_.end(), [&](const ReportEntry* e) {
@@ -382,7 +382,7 @@ class MarkdownWriter {
       rungs.push_back(markdown(label) + " " + (rung != nullptr ? with_spread(*rung) : text::kFell));
       complete = complete && rung != nullptr;
       if (before != nullptr && rung != nullptr && rung->mean >= before->mean &&
-          verdict == words::kHolds) {
+          verdict == report_words::kHolds) {
         verdict = fill(text::kDoesNotHold, {{"row", markdown(label)}});
       }
       if (rung != nullptr) before = rung;
@@ -405,7 +405,7 @@ class MarkdownWriter {
                      {"quantity", markdown(column_title(experiment_, check.bound->metric))},
                      {"allowed", allowed(check)},
                      {"measured", spread != nullptr ? with_spread(*spread) : text::kAbsent},
-                     {"verdict", holds ? words::kHolds
+                     {"verdict", holds ? report_words::kHolds
                                        : fill(text::kMissed, {{"why", markdown(check.missed)}})}});
       held += holds ? 1 : 0;
     }

@@ -25,17 +25,17 @@ std::string joined_by(std::string_view separator, const Texts& texts) {
 }
 
 /// Of every report.
-namespace words {
+namespace report_words {
 
 inline constexpr const char* kTitle =
     "# {title}\n\npirouette {version} ({commit}), MuJoCo {mujoco}. {size}.\n";
 inline constexpr const char* kNote = "\n{note}\n";
 inline constexpr const char* kHolds = "holds";
 
-}  // namespace words
+}  // namespace report_words
 
 /// Of experiments with seeds.
-namespace words::comparison {
+namespace report_words::comparison {
 
 inline constexpr const char* kOneSeed = "Mean ± standard deviation over {seeds} seed{source}";
 inline constexpr const char* kSeeds = "Mean ± standard deviation over {seeds} seeds{source}";
@@ -107,10 +107,10 @@ inline constexpr const char* kOtherAbsent = "cannot be judged: it is absent in {
 inline constexpr const char* kBelow = "{value}, below {limit}";
 inline constexpr const char* kAbove = "{value}, above {limit}";
 
-}  // namespace words::comparison
+}  // namespace report_words::comparison
 
 /// Of experiments whose trials are drawn.
-namespace words::survival {
+namespace report_words::survival {
 
 inline constexpr const char* kSize = "{trials} trials, seed of the draws {seed}";
 inline constexpr const char* kAll = "all";
@@ -151,6 +151,6 @@ inline constexpr const char* kTooManyFell = "{falls} of {trials} trials fell; al
 inline constexpr const char* kNotStoodDown =
     "{rest} of {falls} falls did not end in the stand-down";
 
-}  // namespace words::survival
+}  // namespace report_words::survival
 
 }  // namespace pirouette

@@ -16,7 +16,7 @@
 namespace pirouette {
 namespace {
 
-namespace text = words::survival;
+namespace text = report_words::survival;
 
 using Json = nlohmann::ordered_json;
 
@@ -64,7 +64,7 @@ class MarkdownWriter {
 
   std::string write() {
     out_ << fill(
-        words::kTitle,
+        report_words::kTitle,
         {{"title", markdown(experiment_.title)},
          {"version", version()},
          {"commit", commit()},
@@ -72,7 +72,7 @@ class MarkdownWriter {
          {"size", fill(text::kSize, {{"trials", std::to_string(experiment_.trials.size())},
                                      {"seed", std::to_string(experiment_.random->seed)}})}});
     if (!experiment_.note.empty()) {
-      out_ << fill(words::kNote, {{"note", without_html(experiment_.note)}});
+      out_ << fill(report_words::kNote, {{"note", without_html(experiment_.note)}});
     }
     write_draws();
     write_survival();
@@ -115,7 +115,7 @@ class MarkdownWriter {
     if (const auto& allowed = experiment_.random->max_falls) {
       const bool holds = all.falls <= static_cast<std::size_t>(*allowed);
       out_ << fill(text::kAllowed, {{"falls", std::to_string(*allowed)},
-                                    {"verdict", holds ? words::kHolds : text::kMissed}});
+                                    {"verdict", holds ? report_words::kHolds : text::kMissed}});
     }
   }
 

@@ -25,13 +25,13 @@ using JointCommand = PerLeg<LegCommand>;
 
 /// What the controller does, or why it has stopped.
 enum class ControllerStatus : int {
-  kStanding = 0,      ///< stands on four feet
-  kWalking = 1,       ///< walks
-  kFallen = 2,        ///< roll, pitch or height out of bounds: damped stand-down
-  kBadInput = 3,      ///< inputs not finite, or sensors dead, for too long: damped stand-down
-  kSolverFailed = 4,  ///< MPC or WBC failed too often in a row: damped stand-down
-  kBadCommand = 5,    ///< the computed command was not finite: damped stand-down
-  kCheckFailed = 6,   ///< the self-check found something wrong: damped stand-down
+  kStanding = 0,         ///< stands on four feet
+  kWalking = 1,          ///< walks
+  kFallen = 2,           ///< roll, pitch or height out of bounds: damped stand-down
+  kBadInput = 3,         ///< inputs not finite, or sensors dead, for too long: damped stand-down
+  kSolverFailed = 4,     ///< MPC or WBC failed too often in a row: damped stand-down
+  kBadCommand = 5,       ///< the computed command was not finite: damped stand-down
+  kCheckFailed = 6,      ///< the self-check found something wrong: damped stand-down
   kGyroAgainstLegs = 7,  ///< gyro and legs contradict each other: damped stand-down
 };
 

@@ -26,11 +26,11 @@ struct TickTrace {
   SensorReading sensors;                                  ///< after SensorGuard
   PerLeg<bool> encoder_stuck{};                           ///< the leg's joint angles are not used
   ControllerStatus status = ControllerStatus::kStanding;  ///< after the tick
-  SelfCheck self_check = SelfCheck::kRunning;  ///< state of the self-check
+  SelfCheck self_check = SelfCheck::kRunning;             ///< state of the self-check
   RobotState state;                                       ///< estimated state of the robot
   PerLeg<FootState> feet{};                               ///< kinematics of each leg
   FootContacts contacts;                                  ///< contact of each foot
-  PerLeg<bool> flag_dropped{};  ///< the foot's contact flag is not used
+  PerLeg<bool> flag_dropped{};                            ///< the foot's contact flag is not used
   TerrainPlane plane;                                     ///< estimated ground plane
   GroundEstimate ground;                                  ///< kind of ground
   int remembered_treads = 0;        ///< number of treads in the foothold memory
