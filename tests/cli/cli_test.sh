@@ -5,6 +5,7 @@
 set -u
 
 program=$(realpath "$1")
+source=$(dirname "$(dirname "$(dirname "$(realpath "$0")")")")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work" || exit 1
@@ -202,6 +203,14 @@ wrong 'given "fig66"' reproduce fig66
 wrong '--turns: given 0' reproduce fig6 --turns 0
 wrong '--seeds: given 0' reproduce all --seeds 0
 wrong '--profile: given "real"' spin --profile real
+
+# MuJoCo's own fatal errors, and robots that would walk on quietly.
+xml="$source/robots/mini_cheetah/mini_cheetah.xml"
+sed 's#<worldbody>#<size memory="24K"/>\n  <worldbody>#' "$xml" > sandbox/small.xml
+wrong 'out of memory' spin --robot small.xml
+[ -e sandbox/MUJOCO_LOG.TXT ] && fail 'MuJoCo leaves its log'
+sed 's#<worldbody>#<compiler boundmass="0.01"/>\n  <worldbody>#' "$xml" > sandbox/mended.xml
+wrong 'changes masses silently' spin --robot mended.xml
 
 # The run folder.
 wrong '--out' spin --out ''

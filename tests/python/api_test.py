@@ -166,9 +166,9 @@ def test_the_ground_is_the_terrains():
 
 
 def test_metrics_of_a_trace_are_those_of_its_run():
-    run = pirouette.run(turns=2, set={"run.trace_rate": 500.0})
+    run = pirouette.run(turns=3, set={"run.trace_rate": 500.0})
     recorded = run.trace[
-        run.trace["time"] >= run.metrics["context"]["duration_s"] - 2 * 2 * np.pi / 0.7
+        run.trace["time"] >= run.metrics["context"]["duration_s"] - 3 * 2 * np.pi / 0.7
     ]
     measured = pirouette.metrics(
         recorded["time"],

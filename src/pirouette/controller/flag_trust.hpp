@@ -32,9 +32,9 @@ class FlagTrust {
     return believed_;
   }
 
-  bool believed() const noexcept { return believed_; }
+  bool believed() const noexcept { return believed_; }  ///< the flag is used
 
-  void reset() noexcept { *this = FlagTrust(); }
+  void reset() noexcept { *this = FlagTrust(); }  ///< believes the flag again
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

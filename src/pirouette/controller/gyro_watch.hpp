@@ -49,7 +49,7 @@ class GyroWatch {
     return agree_;
   }
 
-  void reset() noexcept { *this = GyroWatch(); }
+  void reset() noexcept { *this = GyroWatch(); }  ///< nothing seen yet
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

@@ -12,8 +12,9 @@
 
 namespace pirouette {
 
+/// Input of StandingCheck::update().
 struct StandingCheckInput {
-  const SensorReading& sensors;
+  const SensorReading& sensors;      ///< of this tick
   const PerLeg<FootState>& feet;     ///< by the joint angles
   const JointCommand& last_command;  ///< of the tick before
 };
@@ -33,13 +34,14 @@ class StandingCheck {
   /// One tick further; to be called while state() is kRunning.
   void update(const StandingCheckInput& in) noexcept;
 
+  /// What it has found so far.
   SelfCheck state() const noexcept { return state_; }
   /// The trunk turns over its feet.
   bool turns() const noexcept;
   /// What holds and turns the robot, while state() is kRunning.
   const JointCommand& command() const noexcept { return command_; }
 
-  void reset() noexcept;
+  void reset() noexcept;  ///< begins anew with the next tick
 
   /// See base/memory.hpp.
   template <class Self, class Visit>

@@ -30,17 +30,20 @@ struct CommandedMotion {
 
 /// One control tick of a motion. What is absent is not known: the metrics that need it are null.
 struct MotionSample {
-  double time = 0.0;                     ///< s
-  Vec2 p_WG = Vec2::Zero();              ///< m, true CoM
-  Vec2 v_WG_W = Vec2::Zero();            ///< m/s, true CoM
-  double yaw = 0.0;                      ///< rad, true, unwrapped
-  Number roll, pitch;                    ///< rad, true
-  Number relative_roll, relative_pitch;  ///< rad, true, from the terrain's overall plane
-  std::optional<Vec2> a_WB_W;            ///< m/s^2, true, trunk origin
-  Number roll_rate, pitch_rate;          ///< rad/s, true, about the body's x and y axis
-  std::optional<Vec2> position_error;    ///< m, estimated less true trunk position
-  Number yaw_error;                      ///< rad, |estimated - true|
-  double arc_length = 0.0;               ///< m, of the time-indexed reference along its path
+  double time = 0.0;                   ///< s
+  Vec2 p_WG = Vec2::Zero();            ///< m, true CoM
+  Vec2 v_WG_W = Vec2::Zero();          ///< m/s, true CoM
+  double yaw = 0.0;                    ///< rad, true, unwrapped
+  Number roll;                         ///< rad, true
+  Number pitch;                        ///< rad, true
+  Number relative_roll;                ///< rad, true, from the terrain's overall plane
+  Number relative_pitch;               ///< rad, true, from the terrain's overall plane
+  std::optional<Vec2> a_WB_W;          ///< m/s^2, true, trunk origin
+  Number roll_rate;                    ///< rad/s, true, about the body's x axis
+  Number pitch_rate;                   ///< rad/s, true, about the body's y axis
+  std::optional<Vec2> position_error;  ///< m, estimated less true trunk position
+  Number yaw_error;                    ///< rad, |estimated - true|
+  double arc_length = 0.0;             ///< m, of the time-indexed reference along its path
   PerLeg<Number> slip = {};  ///< m/s, of the contact's material point; absent: a foot in the air
 };
 

@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <cctype>
-#include <memory>
 #include <string_view>
 #include <vector>
+
+#include "pirouette/model/mujoco.hpp"
 
 namespace pirouette {
 namespace {
@@ -121,6 +122,10 @@ Errors map_leg(const mjModel& model, const mjData& data, const std::string& file
     map.dof[i] = model.jnt_dofadr[joint];
     map.body[i] = model.jnt_bodyid[joint];
     map.tau_max[static_cast<Eigen::Index>(i)] = torque_limit(model, joint);
+    if (map.tau_max[static_cast<Eigen::Index>(i)] <= 0.0) {
+      fail("joint " + std::string(joint_name(model, joint)) +
+           " has a torque range without torque; allowed: a range about 0, such as -17 17, or none");
+    }
     if (i > 0 && !is_below(model, map.body[i], map.body[i - 1])) {
       fail("joint " + std::string(joint_name(model, joint)) + " is not below joint " +
            std::string(joint_name(model, chain[i - 1])) + "; expected one chain abad, hip, knee");
@@ -156,8 +161,7 @@ Result<RobotMap> map_robot(const mjModel& model, const std::string& file) {
   if (map.trunk_body < 0) {
     errors.push_back({file, 0, "", "no free joint; expected one, on the trunk"});
   } else {
-    const std::unique_ptr<mjData, decltype(&mj_deleteData)> data(mj_makeData(&model),
-                                                                 &mj_deleteData);
+    const DataPtr data(mj_makeData(&model));
     for (int j = 0; j < model.njnt; ++j) {
       if (model.jnt_type[j] == mjJNT_HINGE) data->qpos[model.jnt_qposadr[j]] = 0.0;
     }

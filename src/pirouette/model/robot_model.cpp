@@ -1,11 +1,11 @@
 #include "pirouette/model/robot_model.hpp"
 
-#include <mujoco/mujoco.h>
-
 #include <array>
+#include <optional>
 #include <vector>
 
 #include "pirouette/base/rotation.hpp"
+#include "pirouette/model/mujoco.hpp"
 #include "pirouette/model/robot_map.hpp"
 
 namespace pirouette {
@@ -15,19 +15,21 @@ namespace {
 using RowMajorJacobian = Eigen::Matrix<double, 3, kDof, Eigen::RowMajor>;
 using RowMajorMatDof = Eigen::Matrix<double, kDof, kDof, Eigen::RowMajor>;
 
-struct FreeModel {
-  void operator()(mjModel* m) const { mj_deleteModel(m); }
-};
-struct FreeData {
-  void operator()(mjData* d) const { mj_deleteData(d); }
-};
-struct FreeSpec {
-  void operator()(mjSpec* s) const { mj_deleteSpec(s); }
-};
-
 Vec3 vec3(const mjtNum* p) { return Vec3(p[0], p[1], p[2]); }
 
 int shank_body(const RobotMap& map, Leg leg) { return map.legs[leg].body[2]; }
+
+/// Masses and inertias that the file asks MuJoCo to change without a word.
+std::optional<Error> mended_masses(const mjSpec& spec, const std::string& file) {
+  const mjsCompiler& c = spec.compiler;
+  if (c.balanceinertia == 0 && c.boundmass == 0.0 && c.boundinertia == 0.0 &&
+      c.settotalmass <= 0.0) {
+    return std::nullopt;
+  }
+  return Error{file, 0, "compiler",
+               "balanceinertia, boundmass, boundinertia or settotalmass changes masses silently; "
+               "allowed: none of them, with the masses and inertias themselves in the file"};
+}
 
 /// Lengths of one leg from the kinematics at q = 0, trunk at the world's origin.
 LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
@@ -53,6 +55,11 @@ LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
     if (!m.jnt_limited[joint]) continue;
     g.q_min(j) = m.jnt_range[2 * joint];
     g.q_max(j) = m.jnt_range[2 * joint + 1];
+    if (g.q_max(j) - g.q_min(j) > 4.0 * kPi) {
+      errors.push_back({file, 0, mj_id2name(&m, mjOBJ_JOINT, joint),
+                        "its range is more than two turns: is it in degrees, where the file says "
+                        "angle=\"radian\"?"});
+    }
   }
   const bool straight = std::abs(hip.z() - abad.z()) < kStraight &&
                         std::abs(knee.x() - hip.x()) < kStraight &&
@@ -69,8 +76,8 @@ LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
 }  // namespace
 
 struct RobotModel::Impl {
-  std::unique_ptr<mjModel, FreeModel> m;
-  std::unique_ptr<mjData, FreeData> d;
+  ModelPtr m;
+  DataPtr d;
   RobotMap map;
   double mass = 0.0;
   PerLeg<LegGeometry> legs{};
@@ -106,8 +113,27 @@ struct RobotModel::Impl {
 };
 
 Result<RobotModel> RobotModel::load(const std::string& mjcf) {
+  catch_mujoco_errors();
+  const MujocoWarnings warnings;
+  try {
+    Result<RobotModel> model = read(mjcf);
+    if (!model) return model;
+    // What update() needs of MuJoCo's stack is asked for once here, where an error can be told.
+    model.value().evaluate(RobotState{});
+    if (warnings.texts().empty()) return model;
+    Errors errors;
+    for (const std::string& text : warnings.texts()) {
+      errors.push_back({mjcf, 0, "", "MuJoCo warns: " + text});
+    }
+    return errors;
+  } catch (const MujocoError& error) {
+    return Error{mjcf, 0, "", error.what()};
+  }
+}
+
+Result<RobotModel> RobotModel::read(const std::string& mjcf) {
   std::array<char, 1024> message{};
-  const std::unique_ptr<mjSpec, FreeSpec> spec(
+  const SpecPtr spec(
       mj_parseXML(mjcf.c_str(), nullptr, message.data(), static_cast<int>(message.size())));
   if (!spec) return Error{mjcf, 0, "", std::string("not a readable MJCF file: ") + message.data()};
   auto impl = std::make_unique<Impl>();
@@ -141,6 +167,7 @@ Result<RobotModel> RobotModel::load(const std::string& mjcf) {
   for (const Leg leg : kLegs) {
     impl->legs[leg] = read_geometry(m, *impl->d, impl->map.legs[leg], mjcf, name(leg), errors);
   }
+  if (const auto mended = mended_masses(*spec, mjcf)) errors.push_back(*mended);
   if (!errors.empty()) return errors;
   return RobotModel(std::move(impl));
 }
@@ -174,7 +201,9 @@ Mat3 RobotModel::inertia(const PerLeg<Vec3>& q) {
   return total;
 }
 
-void RobotModel::update(const RobotState& state) noexcept {
+void RobotModel::update(const RobotState& state) noexcept { evaluate(state); }
+
+void RobotModel::evaluate(const RobotState& state) {
   Impl& s = *impl_;
   mjModel* m = s.m.get();
   mjData* d = s.d.get();

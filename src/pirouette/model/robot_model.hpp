@@ -54,6 +54,9 @@ class RobotModel {
   const Vec3& shank_bias(Leg leg) const;  ///< rad/s^2: Jdot nu of the shank's angular velocity
 
  private:
+  static Result<RobotModel> read(const std::string& mjcf);
+  void evaluate(const RobotState& state);
+
   struct Impl;
   explicit RobotModel(std::unique_ptr<Impl> impl);
   std::unique_ptr<Impl> impl_;

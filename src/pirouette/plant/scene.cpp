@@ -64,6 +64,7 @@ mjOption physics_options(const WorldConfig& config) {
 
 Result<Scene> build_scene(const WorldConfig& config, const Terrain& terrain,
                           const std::string& mjcf) {
+  catch_mujoco_errors();
   std::array<char, 1024> message{};
   const SpecPtr spec(
       mj_parseXML(mjcf.c_str(), nullptr, message.data(), static_cast<int>(message.size())));

@@ -1,27 +1,15 @@
 // The robot of an MJCF file on a terrain, as a compiled MuJoCo model.
 #pragma once
 
-#include <mujoco/mujoco.h>
-
-#include <memory>
 #include <string>
 
 #include "pirouette/base/result.hpp"
+#include "pirouette/model/mujoco.hpp"
 #include "pirouette/model/robot_map.hpp"
 #include "pirouette/plant/terrain.hpp"
 #include "pirouette/plant/world_config.hpp"
 
 namespace pirouette {
-
-/// Deleter of MuJoCo's objects.
-struct MujocoDeleter {
-  void operator()(mjSpec* spec) const { mj_deleteSpec(spec); }
-  void operator()(mjModel* model) const { mj_deleteModel(model); }
-  void operator()(mjData* data) const { mj_deleteData(data); }
-};
-using SpecPtr = std::unique_ptr<mjSpec, MujocoDeleter>;
-using ModelPtr = std::unique_ptr<mjModel, MujocoDeleter>;
-using DataPtr = std::unique_ptr<mjData, MujocoDeleter>;
 
 /// A compiled model and its indices.
 struct Scene {

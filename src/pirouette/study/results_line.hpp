@@ -9,11 +9,12 @@
 
 namespace pirouette {
 
+/// Result of one trial, as a line of results.jsonl.
 struct ResultsLine {
   std::string experiment;  ///< name of the experiment that ran the trial
   std::string row;         ///< label of its row there
   std::string key;         ///< trial_key()
-  MetricValues values;
+  MetricValues values;     ///< of the trial
 };
 
 /// JSON without a newline. Its last member, "check", is the FNV-1a fingerprint of the text without

@@ -31,13 +31,14 @@ std::string results_file(const std::optional<Shard>& shard);
 /// Lines of a file by their numbers, from 1 on.
 using NumberedLines = std::map<int, std::string>;
 
+/// The results of a folder, read and checked, and the file to append new ones to.
 class ResultsLog {
  public:
   /// Where a result stands.
   struct Entry {
-    ResultsLine line;
-    std::filesystem::path file;
-    int number = 0;  ///< of the line, from 1 on
+    ResultsLine line;            ///< the result
+    std::filesystem::path file;  ///< file that holds it
+    int number = 0;              ///< of the line, from 1 on
   };
 
   /// Reads all results of `folder` and opens the file of `shard` for appending; `fresh`, without a

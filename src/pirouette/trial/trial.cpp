@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <stdexcept>
 
 #include "pirouette/base/stopwatch.hpp"
 #include "pirouette/controller/spin_controller.hpp"
@@ -397,14 +398,22 @@ double expected_duration(const TrialSetup& setup) {
 }
 
 Errors check_trial(const TrialSetup& setup) {
-  const Result<Robot> robot = build(setup);
-  return robot ? Errors{} : robot.errors();
+  try {
+    const Result<Robot> robot = build(setup);
+    return robot ? Errors{} : robot.errors();
+  } catch (const std::runtime_error& error) {  // of MuJoCo
+    return {Error{setup.plant.mjcf, 0, "", error.what()}};
+  }
 }
 
 Result<TrialResult> run_trial(const TrialSetup& setup, const TrialOptions& options) {
-  Result<Robot> robot = build(setup);
-  if (!robot) return robot.errors();
-  return Trial(setup, options, std::move(robot).value()).run();
+  try {
+    Result<Robot> robot = build(setup);
+    if (!robot) return robot.errors();
+    return Trial(setup, options, std::move(robot).value()).run();
+  } catch (const std::runtime_error& error) {  // of MuJoCo, while it simulates
+    return Error{setup.plant.mjcf, 0, "", error.what()};
+  }
 }
 
 }  // namespace pirouette
