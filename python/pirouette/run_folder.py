@@ -1,6 +1,7 @@
 """A run folder in memory."""
 
 import json
+import math
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,17 +15,21 @@ from pirouette.ground import Ground
 FILES = ("run.toml", "metrics.json", "trace.npy", "terrain.npy")
 LEGS = ("FR", "FL", "RR", "RL")  # order of every per-leg column of the trace
 SHORTEST_RECORD = 1.0  # s
-LEAST_COLUMNS = (
-    "time",
-    "path_position",
-    "true_base_position",
-    "true_base_velocity",
-    "true_rpy",
-    "true_angular_velocity_B",
-    "true_com_position",
-    "true_com_velocity",
-    "true_joint_position",
-)
+LEAST_COLUMNS = {  # of the trace, with the shape of a row's value
+    "time": (),
+    "path_position": (2,),
+    "true_base_position": (3,),
+    "true_base_velocity": (3,),
+    "true_rpy": (3,),
+    "true_angular_velocity_B": (3,),
+    "true_com_position": (3,),
+    "true_com_velocity": (3,),
+    "true_joint_position": (4, 3),
+}
+NUMBERS_OF_CONTEXT = ("point_x", "point_y", "velocity_x", "velocity_y", "terrain_half_extent_m")
+TEXTS_OF_CONTEXT = ("path", "terrain", "robot", "controller")
+# What NumPy raises about a damaged file; the last ones about numbers in its head.
+NUMPY_ERRORS = (ValueError, EOFError, OSError, MemoryError, OverflowError, TypeError, SyntaxError)
 
 
 class RunError(Error):
@@ -93,13 +98,29 @@ def load(folder: Path) -> Run:
 def load_metrics(file: Path) -> dict:
     try:
         metrics = json.loads(file.read_text(encoding="utf-8"))
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise RunError(f"{file}: is no JSON: {error}") from None
     context = metrics.get("context") if isinstance(metrics, dict) else None
     if not isinstance(context, dict) or "version" not in context:
         raise RunError(f"{file}: context.version is missing; a run's metrics.json has it")
     check_version(file, str(context["version"]))
+    check_values(file, metrics, "")
+    for key in NUMBERS_OF_CONTEXT:
+        if isinstance(context.get(key), str | bool):
+            raise RunError(f"{file}: context.{key} is {context[key]!r}; expected a number")
+    for key in TEXTS_OF_CONTEXT:
+        if not isinstance(context.get(key, ""), str):
+            raise RunError(f"{file}: context.{key} is {context[key]!r}; expected a text")
     return metrics
+
+
+def check_values(file: Path, table: dict, prefix: str) -> None:
+    """Refuses what no entry of metrics.json is: lists, and tables within tables of it."""
+    for key, value in table.items():
+        if isinstance(value, dict) and not prefix:
+            check_values(file, value, f"{key}.")
+        elif not isinstance(value, str | bool | int | float | None):
+            raise RunError(f"{file}: {prefix}{key} is {value!r}; expected a number or a text")
 
 
 def check_version(file: Path, version: str) -> None:
@@ -125,23 +146,40 @@ def load_config(file: Path) -> dict:
     except ValueError as error:
         raise RunError(f"{file}: is no TOML: {error}") from None
     for section, key in (("gait", "stand_time"), ("run", "settle_time")):
-        if key not in config.get(section, {}):
+        table = config.get(section)
+        value = table.get(key) if isinstance(table, dict) else None
+        if value is None:
             raise RunError(f"{file}: {section}.{key} is missing")
-    if "robot" not in config:
-        raise RunError(f"{file}: robot is missing")
+        if (
+            isinstance(value, bool)
+            or not isinstance(value, int | float)
+            or not 0 <= value < math.inf
+        ):
+            raise RunError(f"{file}: {section}.{key} is {value!r}; expected a time in s")
+    if not isinstance(config.get("robot"), str):
+        raise RunError(f"{file}: robot is missing, or no text")
     return config
 
 
 def load_trace(file: Path) -> np.ndarray:
     try:
         trace = np.load(file, allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
+    except NUMPY_ERRORS as error:
         raise RunError(f"{file}: is cut or no NumPy file: {error}") from None
     missing = [n for n in LEAST_COLUMNS if n not in (trace.dtype.names or ())]
     if missing:
         raise RunError(f"{file}: columns missing: {', '.join(missing)}")
-    if len(trace) < 2:
-        raise RunError(f"{file}: has {len(trace)} rows; a run has more")
+    if trace.ndim != 1 or len(trace) < 2:
+        raise RunError(f"{file}: has shape {trace.shape}; a run has one axis of two rows or more")
+    for name, shape in LEAST_COLUMNS.items():
+        column = trace[name]
+        if column.shape[1:] != shape or column.dtype.kind != "f":
+            raise RunError(
+                f"{file}: column {name} has rows of shape {column.shape[1:]}, {column.dtype}; "
+                f"expected {shape} of floating-point numbers"
+            )
+    if not (np.isfinite(trace["time"]).all() and (np.diff(trace["time"]) > 0).all()):
+        raise RunError(f"{file}: column time does not rise from row to row")
     return trace
 
 
@@ -150,14 +188,16 @@ def load_ground(folder: Path, context: dict) -> Ground:
     file = folder / "terrain.npy"
     try:
         heights = np.load(file, allow_pickle=False)
-    except (ValueError, EOFError, OSError) as error:
+    except NUMPY_ERRORS as error:
         raise RunError(f"{file}: is cut or no NumPy file: {error}") from None
     extent = context.get("terrain_half_extent_m")
-    if heights.ndim != 2 or min(heights.shape) < 2 or not extent:
+    if heights.ndim != 2 or min(heights.shape) < 2 or not extent or not 0 < extent < math.inf:
         raise RunError(
             f"{file}: has shape {heights.shape} and context.terrain_half_extent_m of metrics.json "
             f"is {extent}; expected two axes and a length in m"
         )
+    if heights.dtype.kind != "f" or not np.isfinite(heights).all():
+        raise RunError(f"{file}: holds {heights.dtype}, or heights that are no number")
     terrain = context.get("terrain", "flat")
     try:
         return Ground.square(heights, float(extent), terrain)
