@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from pirouette import command, report
+from pirouette.run_folder import FILES
 
 
 def replaced(name, content):
@@ -82,11 +83,11 @@ HUGE = (
     + b"\n"
 )
 DAMAGES = {
-    **{f"no {name}": (lambda run, n=name: (run / n).unlink()) for name in report.FILES},
-    **{f"{name} is a folder": a_folder(name) for name in report.FILES},
-    **{f"{name} is empty": replaced(name, b"") for name in report.FILES},
-    **{f"{name} is junk": replaced(name, JUNK) for name in report.FILES},
-    **{f"{name} is cut": cut(name, 100) for name in report.FILES},
+    **{f"no {name}": (lambda run, n=name: (run / n).unlink()) for name in FILES},
+    **{f"{name} is a folder": a_folder(name) for name in FILES},
+    **{f"{name} is empty": replaced(name, b"") for name in FILES},
+    **{f"{name} is junk": replaced(name, JUNK) for name in FILES},
+    **{f"{name} is cut": cut(name, 100) for name in FILES},
     "trace.npy is cut in a row": cut("trace.npy", -7),
     "trace.npy is larger than memory": replaced("trace.npy", HUGE),
     "terrain.npy is larger than memory": replaced("terrain.npy", HUGE),

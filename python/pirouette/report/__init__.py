@@ -11,7 +11,7 @@ from importlib import import_module
 from pathlib import Path
 
 from pirouette import command
-from pirouette.run_folder import FILES, add_to_record, load
+from pirouette.run_folder import add_to_record, load
 
 
 def default_file(folders: list[Path]) -> Path:
