@@ -126,7 +126,7 @@ int verdict(const Config& config, const TrialResult& trial, const std::string& f
     return kNotDone;
   }
   if (trial.completed) return kDone;
-  std::cerr << "not done: " << short_number(100.0 * m.done.value_or(0.0)) << " % of the "
+  std::cerr << "not done: " << short_number(kPercent * m.done.value_or(0.0)) << " % of the "
             << (!config.run.path.empty() ? "laps"
                 : config.run.rate != 0.0 ? "turns"
                                          : "distance")

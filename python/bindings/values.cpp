@@ -161,8 +161,7 @@ void define_joint_command(nb::module_& module) {
         for (const Leg leg : kLegs) {
           const Eigen::Map<const Vec3> q_leg(q.data() + kJointsPerLeg * index(leg));
           const Eigen::Map<const Vec3> dq_leg(dq.data() + kJointsPerLeg * index(leg));
-          const LegCommand& c = self[leg];
-          torque[leg] = c.tau + c.kp.cwiseProduct(c.q - q_leg) + c.kd.cwiseProduct(c.dq - dq_leg);
+          torque[leg] = self[leg].torque(q_leg, dq_leg);
         }
         return to_python(torque);
       },

@@ -21,6 +21,7 @@ inline constexpr double kGravity = 9.81;               ///< m/s^2, along -z of t
 
 constexpr double square(double x) { return x * x; }                         ///< x^2
 constexpr double radians(double degrees) { return degrees * kPi / 180.0; }  ///< rad
+constexpr double degrees(double radians) { return radians * 180.0 / kPi; }  ///< deg
 
 /// Vector `v` shortened to at most `limit` in length, direction kept.
 template <int N>

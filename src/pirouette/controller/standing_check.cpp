@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "pirouette/base/rotation.hpp"
+#include "pirouette/controller/tick_clock.hpp"
 #include "pirouette/estimation/attitude_filter.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 
@@ -21,26 +22,32 @@ constexpr double kDampingTime = 0.05;  // s, damping over stiffness
 constexpr int kMaxTries = 20;          // of standing still: 6 s
 
 // What is allowed. Wide: it is about wiring, not about calibration.
-constexpr double kPeriodError = 0.3;      // share
-constexpr double kMillisecond = 1000.0;   // s per s
-constexpr double kRangeSlack = 0.15;      // rad, beyond a joint's range
-constexpr double kPlaneError = 0.25;      // of the leg's length
-constexpr double kGravityError = 0.15;    // share
-constexpr double kNearlyNothing = 0.2;    // share of g
-constexpr double kUpright = 0.5;          // share of g along z: 60 degrees
-constexpr double kMaxBias = 0.2;          // rad/s, mean turn at rest
-constexpr double kMaxShake = 0.2;         // rad/s, its deviation
-constexpr double kGiveWay = 0.3;          // rad, that a joint may sag
-constexpr double kLeastLift = 0.55;       // of the weight
-constexpr double kMostLift = 1.8;         // of the weight
-constexpr double kGyroError = 0.4;        // share
-constexpr double kDegrees = 180.0 / kPi;  // deg/rad
-constexpr double kMisfit = 0.3;           // share of the feet's motion that is not rigid
+constexpr double kPeriodError = 0.3;     // share
+constexpr double kMillisecond = 1000.0;  // s per s
+constexpr double kRangeSlack = 0.15;     // rad, beyond a joint's range
+constexpr double kPlaneError = 0.25;     // of the leg's length
+constexpr double kGravityError = 0.15;   // share
+constexpr double kNearlyNothing = 0.2;   // share of g
+constexpr double kUpright = 0.5;         // share of g along z: 60 degrees
+constexpr double kMaxBias = 0.2;         // rad/s, mean turn at rest
+constexpr double kMaxShake = 0.2;        // rad/s, its deviation
+constexpr double kGiveWay = 0.3;         // rad, that a joint may sag
+constexpr double kLeastLift = 0.55;      // of the weight
+constexpr double kMostLift = 1.8;        // of the weight
+constexpr double kGyroError = 0.4;       // share
+constexpr double kMisfit = 0.3;          // share of the feet's motion that is not rigid
 constexpr double kSwapMisfit = 0.1;  // the same when front and rear are swapped: mirrored legs fit
 constexpr double kMinDeterminant = 1e-5;  // of a leg's Jacobian over its length^3: not straight
 
-bool is_near(double value, double expected) {
-  return std::abs(value / expected - 1.0) < kGyroError;
+/// Within `error`, a share of `expected`.
+bool is_near(double value, double expected, double error) {
+  return std::abs(value / expected - 1.0) < error;
+}
+
+/// The leg is not straight: its Jacobian `J` can be inverted.
+bool is_bent(const LegGeometry& leg, const Mat3& J) {
+  const double length = leg.thigh + leg.shank;
+  return std::abs(J.determinant()) > kMinDeterminant * length * length * length;
 }
 
 /// Each axis becomes one axis, of either sign.
@@ -48,7 +55,7 @@ bool exchanges_axes(const Mat3& axes) {
   for (const auto& row : axes.cwiseAbs().rowwise()) {
     Vec3 sizes = row.transpose();
     std::sort(sizes.begin(), sizes.end());
-    if (!is_near(sizes.z(), 1.0) || sizes.y() > kGyroError) return false;
+    if (!is_near(sizes.z(), 1.0, kGyroError) || sizes.y() > kGyroError) return false;
   }
   return true;
 }
@@ -80,24 +87,19 @@ void StandingCheck::reset() noexcept {
   turning_ = {};
 }
 
-int StandingCheck::ticks_of(double seconds) const noexcept {
-  return static_cast<int>(std::lround(seconds / period_));
-}
-
 void StandingCheck::update(const StandingCheckInput& in) noexcept {
   if (ticks_ == 0 && tries_ == 0) {
     begin(in);
-    const SelfCheck seen = first_look(in);
-    if (has_failed(seen)) state_ = seen;
+    state_ = first_look(in);
   }
   if (state_ != SelfCheck::kRunning) return;
   if (gives_way(in)) {
     state_ = SelfCheck::kLegsGiveWay;
     return;
   }
-  const int still_from = ticks_of(kSettleTime);
-  const int turn_from = still_from + ticks_of(kStillTime);
-  const int end = turn_from + 3 * ticks_of(kTurnTime);
+  const int still_from = ticks_in(kSettleTime, period_);
+  const int turn_from = still_from + ticks_in(kStillTime, period_);
+  const int end = turn_from + 3 * ticks_in(kTurnTime, period_);
   if (ticks_ >= still_from && ticks_ < turn_from) watch_still(in);
   if (ticks_ == turn_from) {
     const SelfCheck seen = judge_still();
@@ -123,7 +125,8 @@ void StandingCheck::update(const StandingCheckInput& in) noexcept {
 }
 
 bool StandingCheck::turns() const noexcept {
-  return state_ == SelfCheck::kRunning && ticks_ >= ticks_of(kSettleTime) + ticks_of(kStillTime);
+  return state_ == SelfCheck::kRunning &&
+         ticks_ >= ticks_in(kSettleTime, period_) + ticks_in(kStillTime, period_);
 }
 
 void StandingCheck::begin(const StandingCheckInput& in) noexcept {
@@ -157,9 +160,7 @@ void StandingCheck::hold(const Turn& turn) noexcept {
     LegCommand& c = command_[leg];
     c.q = turns ? inverse_kinematics(g, Vec3(p_BF - g.p_BH)).q : stance_.q[leg];
     const Mat3 J = foot_jacobian(g, c.q);
-    const double length = g.thigh + g.shank;
-    const bool bent = std::abs(J.determinant()) > kMinDeterminant * length * length * length;
-    c.dq = bent ? Vec3(J.inverse() * p_BF.cross(turn.rate_B)) : Vec3::Zero();
+    c.dq = is_bent(g, J) ? Vec3(J.inverse() * p_BF.cross(turn.rate_B)) : Vec3::Zero();
     c.tau = Vec3(J.transpose() * Vec3(0.0, 0.0, -stance_.f[leg]))
                 .cwiseMax(-g.tau_max)
                 .cwiseMin(g.tau_max);
@@ -216,13 +217,10 @@ double StandingCheck::lift(const StandingCheckInput& in) const noexcept {
   double sum = 0.0;
   const Vec3 up_B = in.sensors.specific_force_B.normalized();
   for (const Leg leg : kLegs) {
-    const LegCommand& c = in.last_command[leg];
-    const Vec3 tau = c.tau + c.kp.cwiseProduct(c.q - in.sensors.joint_position[leg]) +
-                     c.kd.cwiseProduct(c.dq - in.sensors.joint_velocity[leg]);
-    const Mat3 J = foot_jacobian(legs_[leg], in.sensors.joint_position[leg]);
-    const double length = legs_[leg].thigh + legs_[leg].shank;
-    if (std::abs(J.determinant()) < kMinDeterminant * length * length * length)
-      return mass_ * kGravity;
+    const Vec3& q = in.sensors.joint_position[leg];
+    const Vec3 tau = in.last_command[leg].torque(q, in.sensors.joint_velocity[leg]);
+    const Mat3 J = foot_jacobian(legs_[leg], q);
+    if (!is_bent(legs_[leg], J)) return mass_ * kGravity;
     sum -= up_B.dot(Vec3(J.transpose().inverse() * tau));
   }
   return sum;
@@ -244,19 +242,15 @@ SelfCheck StandingCheck::judge_clock() const noexcept {
   const double passed = still_.last_time - still_.first_time;
   const double rate = passed / ((still_.samples - 1.0) * period_);
   if (rate <= 0.0) return SelfCheck::kClockStopped;
-  const auto near = [&](double expected) { return std::abs(rate / expected - 1.0) < kPeriodError; };
-  if (near(kMillisecond)) return SelfCheck::kClockInMilliseconds;
-  return near(1.0) ? SelfCheck::kRunning : SelfCheck::kClockRate;
+  if (is_near(rate, kMillisecond, kPeriodError)) return SelfCheck::kClockInMilliseconds;
+  return is_near(rate, 1.0, kPeriodError) ? SelfCheck::kRunning : SelfCheck::kClockRate;
 }
 
 SelfCheck StandingCheck::judge_accelerometer(const Vec3& a) const noexcept {
   const double size = a.norm();
-  const auto near = [&](double expected) {
-    return std::abs(size / expected - 1.0) < kGravityError;
-  };
-  if (near(1.0)) return SelfCheck::kAccelerometerInG;
+  if (is_near(size, 1.0, kGravityError)) return SelfCheck::kAccelerometerInG;
   if (size < kNearlyNothing * kGravity) return SelfCheck::kGravityMissing;
-  if (!near(kGravity)) return SelfCheck::kAccelerometerSize;
+  if (!is_near(size, kGravity, kGravityError)) return SelfCheck::kAccelerometerSize;
   if (a.z() < -kUpright * kGravity) return SelfCheck::kAccelerometerUpsideDown;
   if (a.z() < kUpright * kGravity) return SelfCheck::kAccelerometerAxes;
   return SelfCheck::kRunning;
@@ -305,14 +299,14 @@ SelfCheck StandingCheck::judge_turn() const noexcept {
   std::sort(largest.begin(), largest.end());
   const double size = largest.y();
   if (seen.norm() < kNearlyNothing || !seen.allFinite()) return SelfCheck::kGyroStuck;
-  if (is_near(size, kDegrees)) return SelfCheck::kGyroInDegrees;
+  if (is_near(size, degrees(1.0), kGyroError)) return SelfCheck::kGyroInDegrees;
   if (turning_.misfit > kMisfit * turning_.foot_speed) return SelfCheck::kLegOrder;
   const Mat3 axes = seen / size;
   if (!exchanges_axes(axes)) {
     // Legs that work against each other: what is left of the turn tells which.
-    if (is_near(seen(1, 1), 1.0)) return SelfCheck::kLegsLeftRight;
+    if (is_near(seen(1, 1), 1.0, kGyroError)) return SelfCheck::kLegsLeftRight;
     const bool rigid = turning_.misfit < kSwapMisfit * turning_.foot_speed;
-    if (rigid && is_near(seen(0, 0), 1.0) && is_near(-seen(1, 1), 1.0)) {
+    if (rigid && is_near(seen(0, 0), 1.0, kGyroError) && is_near(-seen(1, 1), 1.0, kGyroError)) {
       return SelfCheck::kLegsFrontRear;
     }
     return SelfCheck::kLegOrder;
@@ -320,7 +314,8 @@ SelfCheck StandingCheck::judge_turn() const noexcept {
   const Vec3 same = axes.diagonal();
   if (same.cwiseAbs().minCoeff() < 0.5) return SelfCheck::kGyroAxes;
   const bool roll = same.x() > 0.0, pitch = same.y() > 0.0, yaw = same.z() > 0.0;
-  if (roll && pitch && yaw) return is_near(size, 1.0) ? SelfCheck::kRunning : SelfCheck::kGyroSize;
+  if (roll && pitch && yaw)
+    return is_near(size, 1.0, kGyroError) ? SelfCheck::kRunning : SelfCheck::kGyroSize;
   if (!roll && !pitch && !yaw) return SelfCheck::kGyroOpposite;
   if (!roll && pitch && !yaw) return SelfCheck::kLegsLeftRight;
   if (roll && !pitch && !yaw) return SelfCheck::kLegsFrontRear;

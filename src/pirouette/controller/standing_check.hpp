@@ -67,7 +67,6 @@ class StandingCheck {
   struct Still {
     double samples = 0.0;
     double first_time = 0.0, last_time = 0.0;  ///< s
-    PerLeg<Vec3> first_q{};                    ///< rad
     Vec3 sum_a = Vec3::Zero();                 ///< m/s^2
     Vec3 sum_gyro = Vec3::Zero();              ///< rad/s
     Vec3 sum_legs = Vec3::Zero();              ///< rad/s, the trunk's turn by the legs
@@ -82,7 +81,6 @@ class StandingCheck {
     double misfit = 0.0;            ///< (m/s)^2, of it that is no motion of one rigid body
   };
 
-  int ticks_of(double seconds) const noexcept;
   void watch_still(const StandingCheckInput& in) noexcept;
   void watch_turn(const StandingCheckInput& in) noexcept;
   SelfCheck first_look(const StandingCheckInput& in) const noexcept;

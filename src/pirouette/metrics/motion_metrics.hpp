@@ -62,6 +62,8 @@ class MotionMetrics {
   void add(const MotionSample& sample);
   /// Of the samples so far. Everything is absent without samples.
   Metrics result() const;
+  /// m, along the commanded path, of its point nearest to the last sample; 0 without a path.
+  double nearest_arc_length() const { return nearest_; }
 
  private:
   void add_com(const Vec2& p, const Vec2& v);

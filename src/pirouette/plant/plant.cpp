@@ -182,8 +182,7 @@ void Plant::Impl::drive_motors(const JointCommand& command) {
       dq[i] = data->qvel[at_leg.dof[static_cast<std::size_t>(i)]];
     }
     const Vec3 scale = torque_scale[leg].cwiseProduct(motors.torque[leg]);
-    const Vec3 demand = scale.cwiseProduct(wanted.tau + wanted.kp.cwiseProduct(wanted.q - q) +
-                                           wanted.kd.cwiseProduct(wanted.dq - dq));
+    const Vec3 demand = scale.cwiseProduct(wanted.torque(q, dq));
     diverged = diverged || !demand.allFinite();
     if (diverged) return;
     const Vec3 limit = motors.torque_limit * at_leg.tau_max;

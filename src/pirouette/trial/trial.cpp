@@ -26,7 +26,6 @@ constexpr double kLimitShare = 1.5;         // of the time that the command need
 constexpr double kLimitSlack = 10.0;        // s, on top of that: ramps take theirs
 constexpr double kBrakingShare = 0.5;       // of path.max_yaw_acceleration, at the end of a turn
 constexpr double kStandTime = 1.0;          // s, after a turn by an angle
-constexpr double kPathWindow = 0.3;         // m, about the last nearest point: stays on its branch
 
 bool turns_by_angle(const TrialSetup& setup) { return setup.trial.angle_deg != 0.0; }
 
@@ -85,29 +84,25 @@ class Progress {
  public:
   explicit Progress(const TrialSetup& setup) : setup_(setup) {}
 
-  /// `path`: in the world, absent for a spin; `reference_s`: m along it, of the reference.
-  void begin(const std::optional<Path>& path, const Vec2& p_WG, double yaw, double reference_s) {
-    path_ = &path;
-    start_p_WG_ = p_WG_ = p_WG;
-    start_yaw_ = yaw_ = yaw;
-    if (path) start_s_ = s_ = path->nearest(p_WG, reference_s, kPathWindow);
-  }
-
-  void update(const Vec2& p_WG, double yaw) {
-    if (path_ == nullptr) return;
-    p_WG_ = p_WG;
-    yaw_ = yaw;
-    if (setup_.path) s_ = (*path_)->nearest(p_WG, s_, kPathWindow);
+  /// Where the robot is in a recorded tick.
+  struct Place {
+    Vec2 p_WG = Vec2::Zero();  ///< m
+    double yaw = 0.0;          ///< rad, unwrapped
+    double s = 0.0;            ///< m, along the path, of its point nearest to the CoM
+  };
+  void update(const Place& now) {
+    if (!start_) start_ = now;
+    now_ = now;
   }
 
   /// Share of the laps, turns, angle or distance; absent where nothing was commanded.
   Number share() const {
     const double speed = setup_.motion.v_H.norm();
-    if (path_ == nullptr) return 0.0;
+    if (!start_) return 0.0;
     if (setup_.path) {
       const double length = setup_.path->length();
-      return (s_ - start_s_) /
-             (setup_.path->closed() ? setup_.trial.laps * length : length - start_s_);
+      return (now_.s - start_->s) /
+             (setup_.path->closed() ? setup_.trial.laps * length : length - start_->s);
     }
     if (turns_by_angle(setup_)) return turned() / radians(setup_.trial.angle_deg);
     const double yaw_rate = setup_.motion.yaw_rate;
@@ -115,10 +110,10 @@ class Progress {
       return std::copysign(1.0, yaw_rate) * turned() / (2.0 * kPi * setup_.trial.turns);
     }
     if (speed == 0.0) return std::nullopt;
-    return (p_WG_ - start_p_WG_).norm() / (speed * recorded_time(setup_));
+    return (now_.p_WG - start_->p_WG).norm() / (speed * recorded_time(setup_));
   }
 
-  double turned() const { return yaw_ - start_yaw_; }  ///< rad
+  double turned() const { return start_ ? now_.yaw - start_->yaw : 0.0; }  ///< rad
 
   bool done() const {
     const Number done = share();
@@ -127,10 +122,8 @@ class Progress {
 
  private:
   const TrialSetup& setup_;
-  const std::optional<Path>* path_ = nullptr;  ///< nullptr: the recording has not begun
-  Vec2 start_p_WG_ = Vec2::Zero(), p_WG_ = Vec2::Zero();
-  double start_yaw_ = 0.0, yaw_ = 0.0;
-  double start_s_ = 0.0, s_ = 0.0;
+  std::optional<Place> start_;  ///< absent: the recording has not begun
+  Place now_;
 };
 
 /// Takes away what compares with a steady motion: a turn by an angle ramps and brakes.
@@ -316,10 +309,7 @@ class Trial final : public MotionSource, public Observer {
     if (tick_ >= schedule_.record) {
       if (!motion_) motion_.emplace(commanded_, schedule_.rate);
       motion_->add(motion_sample(truth, yaw_.value(), trace.state, trace.path.arc_length));
-      if (tick_ == schedule_.record) {
-        progress_.begin(commanded_.path, truth.p_WG.head<2>(), yaw_.value(), trace.path.arc_length);
-      }
-      progress_.update(truth.p_WG.head<2>(), yaw_.value());
+      progress_.update({truth.p_WG.head<2>(), yaw_.value(), motion_->nearest_arc_length()});
     }
     constexpr double kRounding = 1e-9;
     const double row_time = static_cast<double>(rows_) / setup_.trial.trace_rate;
@@ -350,7 +340,7 @@ class Trial final : public MotionSource, public Observer {
     Metrics m = motion_ ? motion_->result() : Metrics{};
     m.done = progress_.share();
     if (turns_by_angle(setup_)) {
-      m.angle_error_deg = progress_.turned() * 180.0 / kPi - setup_.trial.angle_deg;
+      m.angle_error_deg = degrees(progress_.turned()) - setup_.trial.angle_deg;
       leave_out_steady_motion(m);
     }
     m.fell = fall_tick_.has_value();

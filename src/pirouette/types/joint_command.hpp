@@ -18,6 +18,11 @@ struct LegCommand {
   Vec3 kp = Vec3::Zero();   ///< N m/rad, stiffness
   Vec3 kd = Vec3::Zero();   ///< N m s/rad, damping
   Vec3 tau = Vec3::Zero();  ///< N m, feed-forward torque
+
+  /// N m, that the motors give at the joint angles `q_now` (rad) and velocities `dq_now` (rad/s).
+  Vec3 torque(const Vec3& q_now, const Vec3& dq_now) const {
+    return tau + kp.cwiseProduct(q - q_now) + kd.cwiseProduct(dq - dq_now);
+  }
 };
 
 /// Command of all joints.
