@@ -133,8 +133,9 @@ soak: build  ## minutes to hours: a spin of ten minutes, then the acceptance exp
 .PHONY: bench
 bench: setup  ## the controller's stages against one physics step; ARGS='--benchmark_filter=Mpc'
 	@$(CONFIGURE) -DPIROUETTE_BENCH=ON > /dev/null
-	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_bench
+	@$(CMAKE) --build $(BUILD) --parallel $(JOBS) --target pirouette_bench pirouette_path_bench
 	@$(BUILD)/bench/pirouette_bench $(ARGS)
+	@$(BUILD)/bench/pirouette_path_bench $(ARGS)
 
 .PHONY: check
 check: check-format lint  ## formatting and clang-tidy

@@ -53,7 +53,7 @@ const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/metrics", kBelowTrial},
     {"src/pirouette/trial",
      kBelowTrial + Patterns{"controller/*", "runtime/*", "plant/*", "metrics/*"}},
-    {"src/pirouette/study", kBelowTrial + kWorld + Patterns{"config/*"}},
+    {"src/pirouette/study", kBelowTrial + kWorld + Patterns{"config/*", "model/robot_model.hpp"}},
     {"src/pirouette/report", {"base/*", "config/*", "metrics/*", "plant/*", "trial/*", "study/*"}},
 
     {"apps/pirouette",
@@ -64,8 +64,8 @@ const std::map<std::string, Patterns> kMayInclude = {
       "plant/plant.hpp", "plant/simulated_world.hpp", "plant/terrain.hpp", "runtime/*", "metrics/*",
       "trial/*", "study/*"}},
     {"bench",
-     {"base/*", "config/*", "controller/spin_controller.hpp", "plant/plant.hpp", "runtime/*",
-      "study/*"}},
+     {"base/*", "config/*", "controller/spin_controller.hpp", "path/path.hpp", "plant/plant.hpp",
+      "runtime/*", "study/*"}},
     {"fuzz", {"base/*", "config/*", "study/*", "model/robot_model.hpp", "path/path.hpp"}},
 };
 

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+#include <random>
 #include <vector>
 
 #include "pirouette/base/rotation.hpp"
@@ -149,6 +151,41 @@ TEST(Path, TheNearestPointIsWhereTheNormalMeetsThePath) {
         const double found = path.nearest(sample.p + aside * normal, s + 0.03, 0.1);
         EXPECT_NEAR(found, s, 1e-9) << "at " << s << ", " << aside << " m aside";
       }
+    }
+  }
+}
+
+/// m, from `p` to the nearest of points of the path every half millimetre within `window` (m) of
+/// `s_near` (m).
+double sampled_distance(const Path& path, const Vec2& p, double s_near, double window) {
+  constexpr double kStep = 5e-4;  // m
+  double least = std::numeric_limits<double>::infinity();
+  for (double way = -window; way <= window; way += kStep) {
+    least = std::min(least, (path.at(s_near + way).p - p).norm());
+  }
+  return least;
+}
+
+TEST(Path, NoSampleOfTheWindowIsNearerThanTheNearestPoint) {
+  constexpr double kWindow = 0.2;  // m
+  // Waypoints from 12 mm to 1.6 m apart, of a curve that bends less than the points lie off it.
+  std::vector<Vec2> uneven;
+  for (const double angle :
+       {0.0, 0.006, 0.02, 0.5, 0.51, 0.53, 1.2, 2.0, 2.02, 2.8, 3.5, 4.2, 5.0, 5.7})
+    uneven.emplace_back(2.0 * std::cos(angle), 2.0 * std::sin(angle));
+  std::mt19937_64 random(7);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  for (const bool closed : {false, true}) {
+    const Path path = Path::spline(uneven, closed).value();
+    for (int i = 0; i < 2000; ++i) {
+      // Every tenth within a window of the ends, where a closed path goes round.
+      const double along = i % 10 == 0 ? share(random) * kWindow : share(random) * path.length();
+      const double s_near = (closed ? 3.0 * path.length() : 0.0) + along;
+      const Vec2 p = path.at(s_near).p + 0.05 * Vec2(share(random) - 0.5, share(random) - 0.5);
+      const double found = path.nearest(p, s_near, kWindow);
+      ASSERT_LE(std::abs(found - s_near), kWindow + 1e-9);
+      ASSERT_LE((path.at(found).p - p).norm(), sampled_distance(path, p, s_near, kWindow) + 1e-9)
+          << (closed ? "closed" : "open") << ", at " << s_near << " of " << path.length();
     }
   }
 }

@@ -117,12 +117,36 @@ double Arc::nearest(const Vec2& p, double s_near) const noexcept {
   return s_near + wrap_angle(angle - curvature * s_near) / curvature;
 }
 
+void Spline::index_pieces() {
+  const std::size_t parts = pieces.size() + 1;
+  part_begins.clear();
+  std::uint32_t piece = 0;
+  for (std::size_t part = 0; part < parts; ++part) {
+    const double s = length * static_cast<double>(part) / static_cast<double>(parts - 1);
+    while (piece + 1 < pieces.size() && pieces[piece + 1].s <= s) ++piece;
+    part_begins.push_back(piece);
+  }
+}
+
+std::size_t Spline::piece_at(double s) const noexcept {
+  if (!(s > 0.0)) return 0;
+  const std::size_t parts = part_begins.size();
+  const auto part =
+      static_cast<std::size_t>(std::min(s / length, 1.0) * static_cast<double>(parts - 1));
+  // One part further on each side: s / length may round across the border of two.
+  const std::size_t first = part_begins[part > 0 ? part - 1 : 0];
+  const std::size_t last = part_begins[std::min(part + 2, parts - 1)];
+  const auto begin = pieces.begin() + static_cast<std::ptrdiff_t>(first) + 1;
+  const auto end = pieces.begin() + static_cast<std::ptrdiff_t>(last) + 1;
+  const auto after =
+      std::upper_bound(begin, end, s, [](double value, const Piece& k) { return value < k.s; });
+  return static_cast<std::size_t>(after - pieces.begin()) - 1;
+}
+
 PathSample Spline::at(double s) const noexcept {
   constexpr int kNewtonSteps = 3;  // of pieces so short that one is nearly exact
   s = closed ? s - length * std::floor(s / length) : std::clamp(s, 0.0, length);
-  const auto after = std::upper_bound(pieces.begin() + 1, pieces.end(), s,
-                                      [](double value, const Piece& k) { return value < k.s; });
-  const Piece& piece = *(after - 1);
+  const Piece& piece = pieces[piece_at(s)];
   double u = (s - piece.s) / first_derivative(piece, 0.0).norm();
   for (int i = 0; i < kNewtonSteps; ++i) {
     u += (s - piece.s - arc_length(piece, u)) / first_derivative(piece, u).norm();
@@ -146,10 +170,18 @@ double Spline::nearest(const Vec2& p, double s_near, double window) const noexce
     const double distance = (q - p).squaredNorm();
     if (distance < best) best = distance, way = candidate;
   };
-  for (const Piece& k : pieces) {
-    const double candidate = to_near(k.s);
-    if (std::abs(candidate) <= reach) consider(k.c.col(0), candidate);
-  }
+  const auto consider_between = [&](double from, double to) {  // m, within the first lap
+    if (from > length + kPieceLength || to < -kPieceLength) return;
+    const std::size_t first = piece_at(from), last = std::min(piece_at(to) + 1, pieces.size() - 1);
+    for (std::size_t i = first > 0 ? first - 1 : 0; i <= last; ++i) {
+      const double candidate = to_near(pieces[i].s);
+      if (std::abs(candidate) <= reach) consider(pieces[i].c.col(0), candidate);
+    }
+  };
+  const double low_end = s_near - lap - reach, high_end = s_near - lap + reach;
+  if (closed) consider_between(0.0, high_end - length);
+  consider_between(low_end, high_end);
+  if (closed) consider_between(low_end + length, length);
   consider(at(s_near).p, 0.0);
   if (!closed) consider(at(length).p, std::clamp(length - s_near, -reach, reach));
   // ... then Newton on (p(s) - p).t(s) = 0, no further than a piece on either side.
@@ -178,7 +210,8 @@ Path Path::arc(const Vec2& start, double heading, double curvature) {
   return Path(Arc{start, heading, curvature});
 }
 
-std::optional<Path> Path::spline(std::span<const Vec2> waypoints, bool closed) {
+std::optional<Path> Path::spline(std::span<const Vec2> waypoints, bool closed,
+                                 std::size_t* turns_back_after) {
   if (!are_usable(waypoints, closed)) return std::nullopt;
   const std::size_t n = waypoints.size();
   std::vector<double> chords;
@@ -201,12 +234,16 @@ std::optional<Path> Path::spline(std::span<const Vec2> waypoints, bool closed) {
     const double count = std::ceil(h / kPieceLength);
     for (double k = 0.0; k < count; ++k) {
       Piece piece = cut(whole, k * h / count, h / count);
-      if (!(least_speed(piece) > kMinSpeed)) return std::nullopt;
+      if (!(least_speed(piece) > kMinSpeed)) {
+        if (turns_back_after != nullptr) *turns_back_after = i;
+        return std::nullopt;
+      }
       piece.s = spline.length;
       spline.length += arc_length(piece, piece.end);
       spline.pieces.push_back(piece);
     }
   }
+  spline.index_pieces();
   return Path(std::move(spline));
 }
 

@@ -1,6 +1,8 @@
 // Plane curves by arc length: the path of the CoM.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <variant>
@@ -40,10 +42,18 @@ struct Spline {
   std::vector<Piece> pieces;  ///< from the start
   double length = 0.0;        ///< m
   bool closed = false;        ///< the last piece ends where the first begins
+  /// Index of the piece at each of as many borders as there are pieces, one more, evenly along the
+  /// length: with it, finding a piece takes as long on any path.
+  std::vector<std::uint32_t> part_begins;
 
+  /// Fills part_begins from the pieces.
+  void index_pieces();
+  /// Index of the piece at arc length `s` (m), held within [0, length].
+  std::size_t piece_at(double s) const noexcept;
   /// Point at arc length `s` (m).
   PathSample at(double s) const noexcept;
-  /// Arc length (m) of the point nearest to `p` (m) within `window` (m) of `s_near` (m).
+  /// Arc length (m) of the point nearest to `p` (m) within `window` (m) of `s_near` (m); takes time
+  /// in proportion to the window.
   double nearest(const Vec2& p, double s_near, double window) const noexcept;
 };
 
@@ -63,8 +73,10 @@ class Path {
   /// Cubic spline through `waypoints` (m) over their chord length: natural ends, or periodic when
   /// `closed` (the first is not repeated). Absent for fewer than two waypoints (three when closed),
   /// neighbours that coincide, values that are not finite, and a curve that turns back on itself,
-  /// because it has no tangent there.
-  static std::optional<Path> spline(std::span<const Vec2> waypoints, bool closed);
+  /// because it has no tangent there; the index of the waypoint before that place then goes to
+  /// `turns_back_after`.
+  static std::optional<Path> spline(std::span<const Vec2> waypoints, bool closed,
+                                    std::size_t* turns_back_after = nullptr);
 
   /// Moves the path so that it starts at `start` with its tangent along `heading` (rad).
   void start_at(const Vec2& start, double heading) noexcept;
