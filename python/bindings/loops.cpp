@@ -6,6 +6,7 @@
 
 #include "arrays.hpp"
 #include "bindings.hpp"
+#include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "simulation.hpp"
 
@@ -22,6 +23,15 @@ nb::dict columns(const Row& row) {
     out[name] = to_python(value);
   });
   return out;
+}
+
+/// Raises an error of `name` unless `value` is within the range of the parameter `key`.
+void check_within(const char* name, double value, const char* key, const char* unit = "") {
+  const Range range = parameter_range(key).value();
+  if (range.min <= value && value <= range.max) return;
+  raise({{"", 0, name,
+          "given " + toml_literal(value) + "; allowed: " + toml_literal(range.min) + " to " +
+              toml_literal(range.max) + unit}});
 }
 
 SpinController create_controller(const Config& config) {
@@ -136,15 +146,22 @@ void define_simulation(nb::module_& module) {
       .def(
           "push",
           [](Simulation& self, const nb::object& dv_W) {
-            self.plant().push(Eigen::Map<const Vec3>(as_array(dv_W, "dv_W", {3}).data()));
+            const Vec3 change = Eigen::Map<const Vec3>(as_array(dv_W, "dv_W", {3}).data());
+            check_within("dv_W", change.norm(), "plant.faults.push_speed", " m/s, its length");
+            self.plant().push(change);
           },
-          "dv_W"_a, "Adds to the trunk's velocity at once: m/s, shape (3,), world axes.")
+          "dv_W"_a,
+          "Adds to the trunk's velocity at once: m/s, shape (3,), world axes. Raises Error unless "
+          "its length is within the range of plant.faults.push_speed.")
       .def(
           "set_friction",
-          [](Simulation& self, double friction) { self.plant().set_friction(friction); },
+          [](Simulation& self, double friction) {
+            check_within("friction", friction, "plant.friction");
+            self.plant().set_friction(friction);
+          },
           "friction"_a,
           "Sliding friction of feet and ground from now on, where the terrain has none of its own; "
-          "reset() returns to plant.friction.")
+          "reset() returns to plant.friction. Raises Error outside that parameter's range.")
       .def("ground", &heights, "x"_a, "y"_a,
            nb::sig("def ground(self, x: object, y: object) -> "
                    "numpy.typing.NDArray[numpy.float64]"),

@@ -1,10 +1,12 @@
 // The compiled part of the Python package. python/pirouette/api.py is what users see of it.
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "arrays.hpp"
@@ -124,6 +126,14 @@ NB_MODULE(_core, module) {
              nb::arg("file").none() = nb::none(), "overrides"_a = std::vector<std::string>{},
              "Defaults, robot, controller and plant profile, a TOML file, and key=value overrides, "
              "each above those before it.");
+  module.def(
+      "parameter_range",
+      [](const std::string& key) -> std::optional<std::pair<double, double>> {
+        const std::optional<Range> range = parameter_range(key);
+        if (!range) return std::nullopt;
+        return std::pair{range->min, range->max};
+      },
+      "key"_a, "Smallest and largest value of a numeric parameter; None for any other key.");
   module.def("known_controllers", &known_controllers, "Names of the controller bundles.");
   module.def("run_trial", &python::run, "config"_a, "trace"_a,
              "Simulates one run; writes the trace to a file, returns metrics.json.");

@@ -152,6 +152,13 @@ def test_the_robot_slides_down_a_slope_that_turns_to_ice():
     simulation = pirouette.Simulation(terrain="slope:10", set={"gait.stand_time": 10})
     simulation.step(500)
     assert abs(simulation.state["true_base_position"][0]) < 0.02
+    for wrong in (-0.1, 6.0, math.nan):
+        with pytest.raises(pirouette.Error, match="friction: given .*; allowed: 0.0 to 5.0"):
+            simulation.set_friction(wrong)
+    with pytest.raises(
+        pirouette.Error, match="dv_W: given .*; allowed: 0.0 to 10.0 m/s, its length"
+    ):
+        simulation.push((0.0, math.inf, 0.0))
     simulation.set_friction(0.05)
     simulation.step(400)
     # g (sin 10 deg - 0.05 cos 10 deg) over 0.8 s: 0.39 m

@@ -7,10 +7,13 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+import viser
 from conftest import ARTEFACTS
 from PIL import Image
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
+from websockets.exceptions import InvalidStatus
+from websockets.sync.client import connect
 
 from pirouette.view import assignment
 from pirouette.view.server import View
@@ -116,10 +119,76 @@ def test_the_robot_stays_in_the_middle_and_the_ground_below_it(view):
 
 
 @pytest.mark.parametrize(
+    ("origin", "accepted"),
+    [
+        (None, True),
+        ("http://localhost:8080", True),
+        ("http://127.0.0.1:1234", True),
+        ("http://[::1]:8080", True),
+        ("https://example.org", False),
+        ("http://localhost.example.org", False),
+        ("http://127.0.0.1.example.org:8080", False),
+        ("http://example.org/?http://localhost", False),
+        ("null", False),  # a file, or a frame in a sandbox
+    ],
+)
+def test_only_pages_of_this_machine_steer_the_robot(view, origin, accepted):
+    assert connects(view.address, origin) == accepted
+
+
+def test_other_pages_steer_the_robot_when_told():
+    options = {"set": {"gait.stand_time": 0.2}}
+    view = View(None, options, "127.0.0.1", 0, origins=["http://robot.local:8080"])
+    try:
+        assert connects(view.address, "http://robot.local:8080")
+        assert not connects(view.address, "http://robot.local:8081")
+    finally:
+        view.close()
+
+
+def connects(address: str, origin: str | None) -> bool:
+    """Whether the server takes a WebSocket of a page with this origin."""
+    url = address.replace("http://", "ws://")
+    try:
+        with connect(url, origin=origin, subprotocols=[f"viser-v{viser.__version__}"]):
+            return True
+    except InvalidStatus as refused:
+        assert refused.response.status_code == 403
+        return False
+
+
+@pytest.mark.parametrize(
+    ("control", "value", "words"),
+    [
+        ("rate", float("nan"), "rate: given nan; allowed: -10 to 10 rad/s"),
+        ("rate", 1e9, "rate: given 1e+09; allowed: -10 to 10 rad/s"),
+        ("forwards", float("inf"), "speed forwards: given inf; allowed: -2 to 2 m/s"),
+        ("friction", -1.0, "friction: given -1.0; allowed: 0.0 to 5.0"),
+        ("friction", float("nan"), "friction: given nan; allowed: 0.0 to 5.0"),
+    ],
+)
+def test_values_that_the_configuration_would_refuse_are_taken_back(
+    view, monkeypatch, control, value, words
+):
+    told = []
+    monkeypatch.setattr(view.panel, "tell", lambda error: told.append(str(error)))
+    slider = getattr(view.panel, control)
+    before, command = slider.value, view.live.simulation.command
+    slider._impl.value = value  # as a page's message does
+    for callback in slider._impl.update_cb:
+        callback(None)
+    delay_until(lambda: slider.value == before)
+    assert told == [words]
+    assert view.live.simulation.command.yaw_rate == command.yaw_rate
+    assert view.live.friction == pytest.approx(0.8)
+
+
+@pytest.mark.parametrize(
     ("arguments", "words"),
     [
         (["--terrain", "mud"], ["plant.terrain", "mud", "slope:"]),
         (["--set", "gait.dutty=1"], ["gait.dutty", "did you mean"]),
+        (["--allow-origin", "robot.local"], ["--allow-origin", "robot.local", "http://NAME"]),
         (["--port", "70000"], ["--port", "70000", "65535"]),
         (["--host", "203.0.113.7"], ["--host", "203.0.113.7", "127.0.0.1"]),  # of nobody
         (["--config", "no/such.toml"], ["no/such.toml"]),

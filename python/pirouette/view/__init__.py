@@ -4,6 +4,7 @@ pirouette-view [--terrain WHAT] [--rate RAD/S] [--port N] ...
 """
 
 import argparse
+import re
 import socket
 import threading
 import tomllib
@@ -25,6 +26,15 @@ def assignment(text: str) -> tuple[str, Any]:
         return key, value
 
 
+def origin(text: str) -> str:
+    """SCHEME://NAME[:PORT] of a page, as browsers send it."""
+    if not re.fullmatch(r"https?://[^/\s]+", text):
+        raise argparse.ArgumentTypeError(
+            f"given {text!r}; allowed: http://NAME[:PORT] or https://NAME[:PORT]"
+        )
+    return text.lower()
+
+
 def parsed() -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="pirouette view", description="Shows the running simulation in a browser."
@@ -42,6 +52,14 @@ def parsed() -> argparse.Namespace:
     option("--set", metavar="KEY=VALUE", type=assignment, action="append", help="one parameter")
     option("--host", metavar="ADDRESS", default="127.0.0.1", help="to listen at [127.0.0.1]")
     option("--port", metavar="N", type=int, default=8080, help="the next free one from [8080]")
+    option(
+        "--allow-origin",
+        metavar="URL",
+        type=origin,
+        action="append",
+        help="page that may steer the robot, such as http://robot.local:8080; always those of "
+        "this machine and of --host",
+    )
     return parser.parse_args()
 
 
@@ -64,8 +82,15 @@ def serve(arguments: argparse.Namespace) -> None:
     config, host, port = options.pop("config", None), options.pop("host"), options.pop("port")
     check_address(host, port)
     options["set"] = dict(options.get("set", []))
-    view = View(config, options, host, port)
+    origins = options.pop("allow_origin", [])
+    view = View(config, options, host, port, origins)
     print(f"Live view: {view.address}, Ctrl-C ends it", flush=True)
+    if host in ("0.0.0.0", "::") and not origins:
+        print(
+            "Pages under this machine's other addresses show the robot only with --allow-origin, "
+            "such as http://192.168.0.7:8080",
+            flush=True,
+        )
     try:
         view.run(threading.Event())
     except KeyboardInterrupt:

@@ -10,8 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from pirouette import _core
 from pirouette.api import MotionCommand, Simulation
 from pirouette.configuration import KEYS, ConfigLike
+from pirouette.errors import Error
 from pirouette.signals import TURN
 
 MOST_BEHIND = 0.1  # s, that the simulation catches up; more is lost when the machine is too slow
@@ -31,6 +33,13 @@ class Motion:
     def command(self) -> MotionCommand:
         forwards = self.forwards + self.radius * self.rate
         return MotionCommand(walk=True, v_H=(forwards, self.left), yaw_rate=self.rate)
+
+
+def check(name: str, value: float, key: str, unit: str) -> None:
+    """Raises Error unless the value is within the range of the parameter `key`."""
+    low, high = _core.parameter_range(key)
+    if not low <= value <= high:  # nor NaN
+        raise Error(f"{name}: given {value:g}; allowed: {low:g} to {high:g} {unit}")
 
 
 class RadiusMeter:
@@ -109,17 +118,23 @@ class Live:
     def _restart_speed(self) -> None:
         self._speed_clock, self._speed_start = time.monotonic(), self.simulation.time
 
-    # Changes, to be handed to change().
+    # Changes, to be handed to change(). They raise Error for a value that the configuration would
+    # refuse, and leave everything as it was.
 
     def move(self, **parts: float) -> None:
         """Changes parts of the motion."""
-        self.motion = replace(self.motion, **parts)
-        self.simulation.command = self.motion.command()
+        motion = replace(self.motion, **parts)
+        command = motion.command()
+        check("rate", command.yaw_rate, "run.rate", "rad/s")
+        for name, speed in zip(("forwards", "to the left"), command.v_H, strict=True):
+            check(f"speed {name}", speed, "run.velocity", "m/s")
+        self.motion = motion
+        self.simulation.command = command
         self.radius_meter = RadiusMeter()
 
     def set_friction(self, friction: float) -> None:
-        self.friction = friction
         self.simulation.set_friction(friction)
+        self.friction = friction
 
     def push(self, forwards: float, left: float) -> None:
         """Adds to the trunk's velocity, m/s, in heading axes."""

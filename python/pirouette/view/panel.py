@@ -81,8 +81,36 @@ class Panel:
     def slider(self, label: str, limit: float, step: float, value: float, part: str):
         limit = max(limit, abs(value))
         slider = self.gui.add_slider(label, -limit, limit, step, value)
-        slider.on_update(lambda _: self.live.change(lambda: self.live.move(**{part: slider.value})))
+        self.acts(slider, lambda value: self.live.move(**{part: value}))
         return slider
+
+    def acts(self, control: Any, act: Callable[[Any], None]) -> None:
+        """Has `act` done with every new value of the control. A page may send anything: a value
+        that is refused is taken back, and said."""
+        limits = {name: getattr(control, name) for name in ("min", "max") if hasattr(control, name)}
+        good = control.value
+
+        def do(value: Any) -> None:
+            nonlocal good
+            try:
+                act(value)
+                good = value
+            except Error as error:
+                control.value = good
+                self.tell(error)
+
+        def update(_: Any) -> None:
+            for name, limit in limits.items():
+                if getattr(control, name) != limit:
+                    setattr(control, name, limit)
+            value = control.value
+            self.live.change(lambda: do(value))
+
+        control.on_update(update)
+
+    def tell(self, error: Error) -> None:
+        for client in self.server.get_clients().values():
+            client.add_notification("Not possible", str(error), color="red")
 
     def add_world(self) -> None:
         config = self.live.simulation.config
@@ -91,9 +119,7 @@ class Panel:
             self.friction = self.gui.add_slider(
                 "friction", 0.05, max(1.5, self.live.friction), 0.05, self.live.friction
             )
-            self.friction.on_update(
-                lambda _: self.live.change(lambda: self.live.set_friction(self.friction.value))
-            )
+            self.acts(self.friction, self.live.set_friction)
             self.controller = self.choice(
                 "controller", _core.known_controllers(), config["controller"]
             )
@@ -103,15 +129,8 @@ class Panel:
         menu = self.gui.add_dropdown(
             option, list(dict.fromkeys((value, *values))), initial_value=value
         )
-        menu.on_update(lambda _: self.live.change(lambda: self.rebuild(option, menu.value)))
+        self.acts(menu, lambda value: self.live.rebuild(option, value))
         return menu
-
-    def rebuild(self, option: str, value: str) -> None:
-        try:
-            self.live.rebuild(option, value)
-        except Error as error:
-            for client in self.server.get_clients().values():
-                client.add_notification("Not possible", str(error), color="red")
 
     def add_disturbances(self) -> None:
         with self.gui.add_folder("Push"):
@@ -120,8 +139,17 @@ class Panel:
             self.pushes.on_click(lambda _: self.push(self.pushes.value))
 
     def push(self, direction: str) -> None:
+        if direction not in PUSHES:
+            return
         forwards, left = (self.strength.value * part for part in PUSHES[direction])
-        self.live.change(lambda: self.live.push(forwards, left))
+
+        def act() -> None:
+            try:
+                self.live.push(forwards, left)
+            except Error as error:
+                self.tell(error)
+
+        self.live.change(act)
 
     def add_run(self) -> None:
         self.paused = self.gui.add_checkbox("pause", False)

@@ -1,12 +1,17 @@
 """The live view: a simulation, its picture and its panel on one server."""
 
 import contextlib
+import functools
 import io
+import ipaddress
+import re
 import threading
 import time
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import viser
+import websockets.asyncio.server
 
 from pirouette.configuration import ConfigLike
 from pirouette.view.live import Live
@@ -17,12 +22,48 @@ FRAME_TIME = 1.0 / 30.0  # s
 FRAMES_PER_UPDATE = 6  # of status and plot
 
 
-class View:
-    """A server with the simulation of a configuration."""
+LOOPBACK = re.compile(r"https?://(localhost|127(\.\d{1,3}){3}|\[::1\])(:\d+)?")
 
-    def __init__(self, config: ConfigLike, options: dict[str, Any], host: str, port: int) -> None:
+
+def page_origins(host: str, others: Sequence[str]) -> list[re.Pattern[str] | str | None]:
+    """Origins of the pages that may steer the robot: those of this machine, those of `host` when
+    that is one address, and `others`. None stands for programs, which send no Origin; a browser
+    sends one with every WebSocket, and any page that it shows can open one to any address."""
+    origins: list[re.Pattern[str] | str | None] = [None, LOOPBACK, *others]
+    with contextlib.suppress(ValueError):
+        if ipaddress.ip_address(host).is_unspecified:
+            return origins
+    name = f"[{host}]" if ":" in host else host
+    return [*origins, re.compile(rf"https?://{re.escape(name)}(:\d+)?", re.IGNORECASE)]
+
+
+@contextlib.contextmanager
+def only_pages_of(origins: Sequence[re.Pattern[str] | str | None]) -> Iterator[None]:
+    """WebSocket servers that start meanwhile refuse pages of other origins (403). viser has no
+    option for it; the server below it has."""
+    serve = websockets.asyncio.server.serve
+    websockets.asyncio.server.serve = functools.partial(serve, origins=origins)
+    try:
+        yield
+    finally:
+        websockets.asyncio.server.serve = serve
+
+
+class View:
+    """A server with the simulation of a configuration. `origins`: of pages that may steer the
+    robot, besides those of `host` and of this machine."""
+
+    def __init__(
+        self,
+        config: ConfigLike,
+        options: dict[str, Any],
+        host: str,
+        port: int,
+        origins: Sequence[str] = (),
+    ) -> None:
         self.live = Live(config, options)
-        with contextlib.redirect_stdout(io.StringIO()):  # viser greets
+        # viser greets
+        with contextlib.redirect_stdout(io.StringIO()), only_pages_of(page_origins(host, origins)):
             self.server = viser.ViserServer(host=host, port=port, label="pirouette", verbose=False)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False)
         self.world = World(self.server, self.live.simulation)

@@ -89,17 +89,17 @@ class Describer {
   void operator()(const T& value, const std::string& name, std::string unit, Range range,
                   std::string meaning) const {
     add({prefix_ + name, name, literal(value), std::move(unit), allowed(value, range),
-         std::move(meaning)});
+         std::move(meaning), range});
   }
 
   template <class T>
   void operator()(const T& value, const std::string& name, std::string meaning) const {
     if constexpr (std::is_enum_v<T>) {
-      add({prefix_ + name, name, literal(enum_name(value)), "", enum_names<T>(), meaning});
+      add({prefix_ + name, name, literal(enum_name(value)), "", enum_names<T>(), meaning, {}});
     } else if constexpr (std::is_same_v<T, bool>) {
-      add({prefix_ + name, name, literal(value), "", "true, false", meaning});
+      add({prefix_ + name, name, literal(value), "", "true, false", meaning, {}});
     } else if constexpr (std::is_same_v<T, std::string>) {
-      add({prefix_ + name, name, literal(value), "", "", meaning});
+      add({prefix_ + name, name, literal(value), "", "", meaning, {}});
     } else {
       T::fields(value, Describer(groups_, prefix_ + name, std::move(meaning)));
     }
@@ -143,6 +143,15 @@ std::vector<std::string> list_keys() {
     for (const ParameterInfo& parameter : group.parameters) keys.push_back(parameter.key);
   }
   return keys;
+}
+
+std::optional<Range> parameter_range(std::string_view key) {
+  for (const ParameterGroup& group : describe(Config{})) {
+    for (const ParameterInfo& parameter : group.parameters) {
+      if (parameter.key == key) return parameter.range;
+    }
+  }
+  return std::nullopt;
 }
 
 std::string dump_toml(const Config& config) {

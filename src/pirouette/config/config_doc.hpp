@@ -1,8 +1,12 @@
 // Description of every parameter, for the dump, the documentation and the error texts.
 #pragma once
 
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "pirouette/base/fields.hpp"
 
 namespace pirouette {
 
@@ -16,6 +20,7 @@ struct ParameterInfo {
   std::string unit;     ///< empty where there is none; "1" for a pure number
   std::string allowed;  ///< "0.15 to 2", "centre, rolling", "true, false"; empty for free text
   std::string meaning;  ///< a sentence
+  std::optional<Range> range;  ///< of a number, or of each of a list of numbers
 };
 
 /// One TOML table. The first group of a Config has an empty key and holds robot and controller.
@@ -34,6 +39,9 @@ std::string dump_toml(const Config& config);
 
 /// Shortest TOML float that reads back as the same double: 0.1, 5.0, 2e-4.
 std::string toml_literal(double value);
+
+/// Range of the parameter `key`; absent if there is none of this name or it is no number.
+std::optional<Range> parameter_range(std::string_view key);
 
 /// Dotted keys of all parameters.
 std::vector<std::string> list_keys();
