@@ -197,6 +197,8 @@ int RunCommand::run() const {
     return report(config_options_.in_typed_words(errors));
   }
 
+  for (const std::string& text : robot_assumptions(config)) std::cerr << "note: " << text << "\n";
+
   watch_interrupts();
   Result<RunFolder> folder = open_folder(config);
   if (!folder) return report(folder.errors());

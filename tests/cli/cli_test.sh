@@ -109,7 +109,7 @@ wrong '--path: given "nowhere.toml": no such file' turn --path nowhere.toml
 wrong 'path.toml:2: speed: given "fast"; allowed: 0.01 to 2 m/s' turn --path path.toml
 printf '[run]\nrate = 0.7\n' > sandbox/run.toml
 printf 'points = [[0, 0], [1, 0], [0, 0]]\n' > sandbox/back.toml
-wrong 'back.toml: points: the path turns back on itself' turn --path back.toml
+wrong 'back.toml:1: points: the curve turns back on itself' turn --path back.toml
 wrong '--heading-offset-deg: needs --radius or --speed' turn --rate 1 --heading-offset-deg 90 --config run.toml
 wrong 'run.turns: makes a trial of' spin --rate 1e-16
 wrong '--laps: given 0' turn --path figure8 --laps 0

@@ -95,6 +95,12 @@ TEST_F(PathFiles, PointsMustMakeAPath) {
             "3: points: the last is the first again, which closed adds\n");
 }
 
+TEST_F(PathFiles, ACurveThatTurnsBackOnItselfIsNamedWithItsPoints) {
+  EXPECT_EQ(errors_of("points = [[0, 0],\n[1, 0],\n[0, 0]]"),
+            "2: points: the curve turns back on itself between [0, 0] and [1, 0]; allowed: points "
+            "through which a smooth curve runs forwards\n");
+}
+
 TEST_F(PathFiles, AFileThatIsNotThereOrNotTomlIsNamed) {
   EXPECT_NE(errors_of("points = [").find("1: : "), std::string::npos);
   EXPECT_EQ(load_path_file("nowhere.toml").errors().front().to_string(),

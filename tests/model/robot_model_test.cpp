@@ -293,6 +293,23 @@ TEST(RobotModelErrors, NameEveryLegThatIsNotStraightAtZero) {
   }
 }
 
+TEST(RobotModelErrors, NameRangesInRadiansThatTheFileCountsInDegrees) {
+  const std::string errors =
+      errors_of(write(replaced(replaced(text_of_robot(), "angle=\"radian\"", "angle=\"degree\""),
+                               "range=\"-2.7 0\"", "range=\"-154.7 0\"")));
+  expect_mentions(errors, "8 of 12 leg joints");
+  expect_mentions(errors, "<compiler angle=\"radian\"/>");
+}
+
+TEST(RobotModel, SaysWhichJointsHaveNoTorqueLimit) {
+  EXPECT_TRUE(RobotModel::load(write(text_of_robot())).value().assumptions().empty());
+  const std::string file = write(replaced(text_of_robot(), " actuatorfrcrange=\"-28 28\"", ""));
+  const std::vector<std::string> texts = RobotModel::load(file).value().assumptions();
+  ASSERT_EQ(texts.size(), 1u);
+  expect_mentions(texts[0],
+                  "no torque limit of FR_knee, FL_knee, RR_knee, RL_knee: up to 1000 N m");
+}
+
 TEST(RobotModelErrors, NameADegreeOfFreedomTooMany) {
   const std::string errors = errors_of(
       write(replaced(text_of_robot(), "<site name=\"imu\" group=\"4\"/>",

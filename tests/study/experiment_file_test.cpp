@@ -252,6 +252,17 @@ TEST_F(ExperimentFiles, NameTheLineOfAWrongParameterOnce) {
             "21: profile: given \"realistc\"");
 }
 
+TEST_F(ExperimentFiles, NameTheLineOfWhatATrialWouldRefuse) {
+  EXPECT_EQ(errors_of("gait.period = 0.5", "plant.terrain = \"slope:99\"").substr(0, 38),
+            "12: plant.terrain: \"slope:99\": the slo");
+  EXPECT_EQ(errors_of("gait.period = 0.5", "plant.command_latency = 0.0015"),
+            "12: plant.command_latency: must be a whole number of physics steps, plant.timestep");
+  EXPECT_EQ(errors_of("gait.period = 0.5",
+                      "plant.terrain = \"rough:0.05\"\nrun.start_offset = [4.5, 0.0]"),
+            "13: run.start_offset: the start is nearer than 1 m to the edge of this terrain, which "
+            "ends 5.000000 m from the origin");
+}
+
 TEST_F(ExperimentFiles, NameTheLineOfAWrongController) {
   const std::string text = errors_of("controller = \"mit\"", "controller = \"mti\"");
   EXPECT_EQ(text.substr(0, 33), "7: controller: given \"mti\"; allow") << text;

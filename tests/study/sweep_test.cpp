@@ -328,13 +328,15 @@ TEST_F(Sweeps, RefuseTheFolderOfADifferentExperimentOfTheSameName) {
       std::string::npos);
 }
 
-TEST_F(Sweeps, RefuseABadTerrainBeforeAnythingRuns) {
+TEST_F(Sweeps, RefuseARobotThatCannotStandBeforeAnythingRuns) {
   const Experiment experiment =
-      load(tiny_but("gait.stand_time = 0.2", "gait.stand_time = 0.2\nplant.terrain = \"moon\""));
+      load(tiny_but("gait.stand_time = 0.2", "gait.stand_time = 0.2\nbody.height = 1.0"));
   const Result<SweepResult> result = run_sweep(experiment, options("run", 1));
   ASSERT_FALSE(result);
   ASSERT_EQ(result.errors().size(), 1u);
-  EXPECT_NE(result.errors().front().to_string().find("moon"), std::string::npos);
+  EXPECT_NE(
+      result.errors().front().to_string().find("tiny.toml: body.height: the robot cannot stand"),
+      std::string::npos);
   EXPECT_FALSE(fs::exists(folder_ / "run"));
 }
 

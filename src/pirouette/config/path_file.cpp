@@ -57,6 +57,7 @@ class PathReader {
     const toml::node* points = table.get("points");
     if (points == nullptr) errors_.push_back({file_, 0, "points", "missing; a path needs points"});
     if (points != nullptr && errors_.empty()) check_distances(*points);
+    if (points != nullptr && errors_.empty()) fit(*points->as_array());
     std::stable_sort(errors_.begin(), errors_.end(),
                      [](const Error& a, const Error& b) { return a.line < b.line; });
     if (!errors_.empty()) return errors_;
@@ -132,6 +133,19 @@ class PathReader {
                                                 shown(list[i]) + "; allowed: 0.01 m apart and more";
       report(list[next == 0 ? i : next], "points", words);
     }
+  }
+
+  void fit(const toml::array& list) {
+    std::size_t before = 0;
+    const std::optional<Path> curve = Path::spline(path_.points, path_.closed, &before);
+    if (curve) {
+      path_.curve = *curve;
+      return;
+    }
+    const std::size_t after = (before + 1) % list.size();
+    report(list[after], "points",
+           "the curve turns back on itself between " + shown(list[before]) + " and " +
+               shown(list[after]) + "; allowed: points through which a smooth curve runs forwards");
   }
 
   std::string file_;

@@ -6,6 +6,7 @@
 
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/result.hpp"
+#include "pirouette/path/path.hpp"
 #include "pirouette/trial/trial_config.hpp"
 
 namespace pirouette {
@@ -21,6 +22,7 @@ namespace pirouette {
 struct PathFile {
   std::vector<Vec2> points;       ///< m
   bool closed = false;            ///< returns to the first point
+  Path curve;                     ///< the spline through the points
   double speed = 0.2;             ///< m/s
   bool hold_heading = false;      ///< the body keeps its heading
   double travel_direction = 0.0;  ///< rad, direction of the path from the body's front

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <optional>
+#include <sstream>
+#include <string>
 #include <vector>
 
 #include "pirouette/base/rotation.hpp"
@@ -71,6 +73,28 @@ LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
          "other, the hip axis level with the abad axis"});
   }
   return g;
+}
+
+/// What is wrong when the leg joints hardly move.
+std::optional<Error> degrees_for_radians(const mjModel& m, const RobotMap& map,
+                                         const std::string& file) {
+  constexpr double kNarrow = 0.15;  // rad: no leg walks with a joint of less
+  std::vector<int> narrow;
+  for (const Leg leg : kLegs) {
+    for (const int joint : map.legs[leg].joint) {
+      const mjtNum* range = m.jnt_range + 2 * joint;
+      if (m.jnt_limited[joint] && range[1] - range[0] < kNarrow) narrow.push_back(joint);
+    }
+  }
+  if (narrow.empty()) return std::nullopt;
+  const mjtNum* range = m.jnt_range + 2 * narrow.front();
+  std::ostringstream text;
+  text << narrow.size() << " of 12 leg joints, " << mj_id2name(&m, mjOBJ_JOINT, narrow.front())
+       << " among them, have a range narrower than 0.15 rad: its " << range[0] << " to " << range[1]
+       << " rad would be " << degrees(range[0]) << " to " << degrees(range[1])
+       << " if the file's angles are in radians; MJCF counts in degrees unless the file says "
+          "<compiler angle=\"radian\"/>";
+  return Error{file, 0, "range", text.str()};
 }
 
 }  // namespace
@@ -167,6 +191,7 @@ Result<RobotModel> RobotModel::read(const std::string& mjcf) {
   for (const Leg leg : kLegs) {
     impl->legs[leg] = read_geometry(m, *impl->d, impl->map.legs[leg], mjcf, name(leg), errors);
   }
+  if (const auto wrong = degrees_for_radians(m, impl->map, mjcf)) errors.push_back(*wrong);
   if (const auto mended = mended_masses(*spec, mjcf)) errors.push_back(*mended);
   if (!errors.empty()) return errors;
   return RobotModel(std::move(impl));
@@ -179,6 +204,23 @@ RobotModel::~RobotModel() = default;
 
 double RobotModel::mass() const { return impl_->mass; }
 const PerLeg<LegGeometry>& RobotModel::legs() const { return impl_->legs; }
+
+std::vector<std::string> RobotModel::assumptions() const {
+  std::string unlimited;
+  for (const Leg leg : kLegs) {
+    for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
+      if (impl_->legs[leg].tau_max(static_cast<int>(j)) < kNoTorqueLimit) continue;
+      unlimited +=
+          (unlimited.empty() ? "" : ", ") +
+          std::string(mj_id2name(impl_->m.get(), mjOBJ_JOINT, impl_->map.legs[leg].joint[j]));
+    }
+  }
+  if (unlimited.empty()) return {};
+  std::ostringstream text;
+  text << "no torque limit of " << unlimited << ": up to " << kNoTorqueLimit
+       << " N m are commanded; give the joints an actuatorfrcrange, or their motors a forcerange";
+  return {text.str()};
+}
 
 Vec3 RobotModel::com(const PerLeg<Vec3>& q) {
   impl_->set_pose(Vec3::Zero(), Mat3::Identity(), q);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
@@ -34,6 +35,8 @@ class RobotModel {
 
   double mass() const;                      ///< kg
   const PerLeg<LegGeometry>& legs() const;  ///< lengths and limits of each leg
+  /// What the file leaves out and what stands in for it, a sentence each.
+  std::vector<std::string> assumptions() const;
   /// Inertia (kg m^2) of the whole robot about its CoM, trunk axes, at joint angles `q` (rad).
   Mat3 inertia(const PerLeg<Vec3>& q);
   /// CoM (m) in trunk axes at joint angles `q` (rad).

@@ -279,7 +279,7 @@ void Plant::Impl::observe() {
   }
 }
 
-Result<Plant> Plant::create(const WorldConfig& config, const PlantSetup& setup) {
+Errors Plant::check(const WorldConfig& config, const PlantSetup& setup) {
   Errors errors;
   const Result<TerrainSpec> spec = parse_terrain(config.terrain);
   if (!spec) errors = spec.errors();
@@ -292,19 +292,27 @@ Result<Plant> Plant::create(const WorldConfig& config, const PlantSetup& setup) 
     errors.push_back({"", 0, "plant.command_latency",
                       "must be a whole number of physics steps, plant.timestep"});
   }
-  if (!errors.empty()) return errors;
-
-  const Terrain terrain(spec.value(), setup.seed);
-  if (setup.start.cwiseAbs().maxCoeff() > terrain.half_extent() - kStartMargin) {
-    return Error{"", 0, "run.start_offset",
-                 "the start is nearer than 1 m to the edge of this terrain, which ends " +
-                     std::to_string(terrain.half_extent()) + " m from the origin"};
+  if (!spec) return errors;
+  const double extent = half_extent(spec.value());
+  if (setup.start.cwiseAbs().maxCoeff() > extent - kStartMargin) {
+    errors.push_back({"", 0, "run.start_offset",
+                      "the start is nearer than 1 m to the edge of this terrain, which ends " +
+                          std::to_string(extent) + " m from the origin"});
   }
+  return errors;
+}
+
+Result<Plant> Plant::create(const WorldConfig& config, const PlantSetup& setup) {
+  Errors errors = check(config, setup);
+  if (!errors.empty()) return errors;
+  const std::size_t steps = whole_periods(setup.period, config.timestep).value();
+  const std::size_t delay = whole_periods(config.command_latency, config.timestep).value();
+  const Terrain terrain(parse_terrain(config.terrain).value(), setup.seed);
   Result<Scene> scene = build_scene(config, terrain, setup.mjcf);
   if (!scene) return scene.errors();
 
   auto impl =
-      std::make_unique<Impl>(config, setup, terrain, std::move(scene).value(), *delay, *steps);
+      std::make_unique<Impl>(config, setup, terrain, std::move(scene).value(), delay, steps);
   errors = stand_robot(*impl->model, impl->map, terrain, setup.start, setup.start_yaw,
                        setup.com_height, *impl->data);
   if (!errors.empty()) return errors;

@@ -30,6 +30,10 @@ struct PlantSetup {
 /// Simulation of one robot in its world.
 class Plant {
  public:
+  /// Errors of the settings alone, found without building the world or reading the robot's file:
+  /// the terrain's text, the start beyond its edge, times that are no whole number of steps.
+  static Errors check(const WorldConfig& config, const PlantSetup& setup);
+
   /// Builds config.terrain with the robot standing on it, feet vertically below the hips. The
   /// errors name the robot's file, the terrain, or the leg that cannot reach the ground.
   static Result<Plant> create(const WorldConfig& config, const PlantSetup& setup);

@@ -251,10 +251,11 @@ double Terrain::contact_time_constant(double otherwise) const {
   return soft ? soft->time_constant : otherwise;
 }
 
-double Terrain::half_extent() const {
-  if (const auto* stairs = std::get_if<Stairs>(&spec_))
+double half_extent(const TerrainSpec& spec) {
+  if (const auto* stairs = std::get_if<Stairs>(&spec))
     return kHalfExtent / climb_direction(*stairs).lpNorm<1>();  // of the square within a turned one
-  return grid_.empty() ? std::numeric_limits<double>::infinity() : kHalfExtent;
+  const auto* rough = std::get_if<RoughGround>(&spec);
+  return rough && rough->height > 0.0 ? kHalfExtent : std::numeric_limits<double>::infinity();
 }
 
 void Terrain::add_stairs(mjSpec_& spec, const Stairs& stairs, const Vec3& friction) const {

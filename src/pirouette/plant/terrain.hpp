@@ -63,6 +63,9 @@ Result<TerrainSpec> parse_terrain(std::string_view text);
 /// The value of plant.terrain for `spec`; parse_terrain() gives the same numbers.
 std::string to_string(const TerrainSpec& spec);
 
+/// Distance (m) of the ground's edge from the origin along x and y; infinite for planes.
+double half_extent(const TerrainSpec& spec);
+
 /// The ground of one world.
 class Terrain {
  public:
@@ -85,9 +88,6 @@ class Terrain {
 
   /// Time constant (s) of the feet's contact; `otherwise` if the terrain has none of its own.
   double contact_time_constant(double otherwise) const;
-
-  /// Distance (m) of the edge from the origin along x and y; infinite for planes.
-  double half_extent() const;
 
   /// Adds the ground's geoms to the world body of `spec`, with the `friction` of sliding (1),
   /// torsion (m) and rolling (m). They do not include the friction of a patch: see friction().

@@ -7,6 +7,7 @@
 #include "pirouette/base/version.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/path_file.hpp"
+#include "pirouette/model/robot_model.hpp"
 #include "pirouette/trial/run_folder.hpp"
 
 namespace pirouette {
@@ -37,10 +38,8 @@ Errors load_motion(const TrialConfig& run, TrialSetup& setup) {
   const double speed = run.path_speed > 0.0 ? run.path_speed : file.value().speed;
   command.v_H = rot2(file.value().travel_direction) * Vec2(speed, 0.0);
   command.hold_heading = file.value().hold_heading;
-  setup.path = Path::spline(file.value().points, file.value().closed);
-  if (setup.path) return {};
-  return {{name.value().string(), 0, "points",
-           "the path turns back on itself; allowed: curves that a robot can follow"}};
+  setup.path = file.value().curve;
+  return {};
 }
 
 RunContext describe_run(const Config& config, const MotionCommand& motion) {
@@ -97,6 +96,24 @@ Result<TrialSetup> set_up(const Config& config) {
   setup.trial = config.run;
   setup.context = describe_run(config, setup.motion);
   return setup;
+}
+
+Errors check_settings(const Config& config) {
+  TrialSetup setup;
+  Errors errors = load_motion(config.run, setup);
+  const Errors of_plant = Plant::check(config.plant, plant_setup(config, ""));
+  errors.insert(errors.end(), of_plant.begin(), of_plant.end());
+  return errors;
+}
+
+std::vector<std::string> robot_assumptions(const Config& config) {
+  const Result<std::string> mjcf = resolve_robot(config);
+  if (!mjcf) return {};
+  const Result<RobotModel> model = RobotModel::load(mjcf.value());
+  if (!model) return {};
+  std::vector<std::string> texts = model.value().assumptions();
+  for (std::string& text : texts) text = mjcf.value() + ": " + text;
+  return texts;
 }
 
 Errors check_trial(const Config& config) {

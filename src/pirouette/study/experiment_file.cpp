@@ -10,6 +10,7 @@
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
+#include "pirouette/study/configured_trial.hpp"
 #include "pirouette/study/experiment_reader.hpp"
 #include "pirouette/study/plain_text.hpp"
 #include "pirouette/study/table_reader.hpp"
@@ -117,9 +118,10 @@ class Expansion {
       sources.overrides.push_back("run.turns=" + toml_literal(*changes_.turns));
     }
     const Result<Config> config = load_config(sources);
-    if (config) return config.value();
-    for (const Error& error : config.errors()) report(placed(error, row, settings));
-    return std::nullopt;
+    const Errors errors = config ? check_settings(config.value()) : config.errors();
+    for (const Error& error : errors) report(placed(error, row, settings));
+    if (!errors.empty()) return std::nullopt;
+    return config.value();
   }
 
   /// `error` with the line of the experiment file that it comes from.

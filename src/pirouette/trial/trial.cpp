@@ -158,15 +158,16 @@ Result<Robot> build(const TrialSetup& setup) {
     return Error{"", 0, setup.path ? "run.laps" : "run.turns", text.str()};
   }
   Result<SpinController> controller = SpinController::create(setup.controller, setup.plant.mjcf);
+  if (!controller) {
+    // Both read the robot's file: what is wrong with it, and what follows from it, is said once.
+    Errors errors = controller.errors();
+    const Errors of_settings = Plant::check(setup.world, setup.plant);
+    errors.insert(errors.end(), of_settings.begin(), of_settings.end());
+    return errors;
+  }
   Result<Plant> plant = Plant::create(setup.world, setup.plant);
-  if (controller && plant) return Robot{std::move(plant).value(), std::move(controller).value()};
-  // Both read the robot's file: what is wrong with it is said once.
-  Errors errors = controller ? Errors{} : controller.errors();
-  const Errors more = plant ? Errors{} : plant.errors();
-  std::copy_if(more.begin(), more.end(), std::back_inserter(errors), [&](const Error& error) {
-    return controller || error.file != controller.errors().front().file;
-  });
-  return errors;
+  if (!plant) return plant.errors();
+  return Robot{std::move(plant).value(), std::move(controller).value()};
 }
 
 /// Commands the motion, judges falls by the truth, and measures.
