@@ -78,6 +78,22 @@ void define_reading(nb::module_& module) {
       },
       nb::for_setter(nb::arg().none()),
       "four flags: the foot touches; None where the robot has no contact sensing");
+  reading.def_prop_rw(
+      "foot_force",
+      [](const SensorReading& self) -> std::optional<std::array<double, kLegCount>> {
+        if (!self.foot_force) return std::nullopt;
+        return self.foot_force->values;
+      },
+      [](SensorReading& self, const nb::object& given) {
+        self.foot_force.reset();
+        if (given.is_none()) return;
+        const InputArray forces = as_array(given, "foot_force", {kLegCount});
+        self.foot_force.emplace();
+        for (const Leg leg : kLegs) (*self.foot_force)[leg] = forces.data()[index(leg)];
+      },
+      nb::for_setter(nb::arg().none()),
+      "four raw forces in any unit, rising with the load, from which the controller makes its own "
+      "contact flags; None where the feet have no force sensors");
   reading.def_rw("aid", &SensorReading::aid, nb::arg().none(),
                  "PositionAid in the ticks in which one arrives, else None");
   reading.def_rw("truth", &SensorReading::truth, nb::arg().none(),

@@ -46,7 +46,8 @@ enum class RandomPurpose : std::uint32_t {
   kContactErrors = 5,    ///< wrong contact flags
   kPositionAid = 6,      ///< noise and drop-outs of the position aid
   kImuSpikes = 7,        ///< faults
-  kLostCommands = 8      ///< faults
+  kLostCommands = 8,     ///< faults
+  kFootForces = 9        ///< scales and noise of the feet's force sensors
 };
 
 /// Random numbers of one seed and purpose. It uses the generator and the seeding of the standard

@@ -24,6 +24,10 @@ bool is_finite(const PositionAid& aid) {
   return aid.p_WB.allFinite() && std::isfinite(aid.yaw) && std::isfinite(aid.time);
 }
 
+bool is_finite(const PerLeg<double>& values) {
+  return std::all_of(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+}
+
 bool is_finite(const MotionCommand& c) {
   return c.v_H.allFinite() && std::isfinite(c.yaw_rate) && (!c.point || c.point->allFinite()) &&
          (!c.heading || std::isfinite(*c.heading));
@@ -48,6 +52,7 @@ bool SensorGuard::update(const SensorReading& sensors, const MotionCommand& comm
   const Vec3 last_specific_force_B = input_.sensors.specific_force_B;
   input_.sensors = sensors;
   if (sensors.aid && !is_finite(*sensors.aid)) input_.sensors.aid.reset();
+  if (sensors.foot_force && !is_finite(*sensors.foot_force)) input_.sensors.foot_force.reset();
   input_.command = command;
   if (outliers_ > 0) {
     input_.sensors.w_WB_B = last_w_WB_B;

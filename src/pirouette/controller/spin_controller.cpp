@@ -8,6 +8,7 @@
 #include "pirouette/com/com_planner.hpp"
 #include "pirouette/controller/body_horizon.hpp"
 #include "pirouette/controller/command_guard.hpp"
+#include "pirouette/controller/foot_load.hpp"
 #include "pirouette/controller/foot_planner.hpp"
 #include "pirouette/controller/force_planner.hpp"
 #include "pirouette/controller/gait_timing.hpp"
@@ -84,7 +85,7 @@ ComPlannerInput com_planner_input(const RobotState& state, const GaitPhase& gait
 }
 
 /// Counts up when what a snapshot holds changes without a change of its size.
-constexpr std::uint64_t kSnapshotVersion = 2;
+constexpr std::uint64_t kSnapshotVersion = 3;
 constexpr std::size_t kHeaderSize = 2 * sizeof(std::uint64_t);  ///< version and checksum
 
 std::uint64_t checksum(std::span<const std::byte> content) {
@@ -129,10 +130,10 @@ struct SpinController::Impl {
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
     auto& [configuration, robot, height, nominal, clock, guard, check, gyro, localization_, timing_,
-           lift_off, ground, motion, feet, com, forces, joints, start_, started_, last_, cost] =
-        self;
-    visit(clock, guard, check, gyro, localization_, timing_, lift_off, ground, motion, com, forces,
-          joints, start_, started_, last_);
+           load, lift_off, ground, motion, feet, com, forces, joints, start_, started_, last_,
+           cost] = self;
+    visit(clock, guard, check, gyro, localization_, timing_, load, lift_off, ground, motion, com,
+          forces, joints, start_, started_, last_);
   }
 
   BodyReference reference(const MotionPlan& motion, const ComPlan& com_plan,
@@ -151,6 +152,7 @@ struct SpinController::Impl {
   GyroWatch gyro_watch;
   Localization localization;
   GaitTiming gait_timing;
+  FootLoad foot_load;
   LiftOffPoints lift_off_points;
   GroundSense ground_sense;
   MotionPlanner motion_planner;
@@ -175,6 +177,7 @@ void SpinController::Impl::reset(const BasePose& pose) {
   standing_check.reset();
   gyro_watch.reset();
   localization.reset(pose);
+  foot_load.reset();
   gait_timing.reset();
   motion_planner.reset();
   com_planner.reset();
@@ -248,8 +251,10 @@ const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
       gait_timing.update({command, state.v_WG_W, last.reference.v_WG_W, last_path_yaw_rate,
                           last.gait.walking, last.ground.stepped},
                          dt);
+  const std::optional<PerLeg<bool>> foot_contact =
+      sensors.foot_force ? foot_load.update(*sensors.foot_force, gait, dt) : sensors.foot_contact;
   const FootContacts contacts = localization.find_contacts(
-      {sensors.foot_contact, encoder_stuck, state, feet, gait, last.plane, last.ground}, dt);
+      {foot_contact, encoder_stuck, state, feet, gait, last.plane, last.ground}, dt);
   const bool gyro_agrees =
       !gait.walking || gyro_watch.update(sensors.w_WB_B, feet, contacts, encoder_stuck, dt);
   const PerLeg<Vec3>& p_WF_liftoff = lift_off_points.update(contacts, state.p_WF);

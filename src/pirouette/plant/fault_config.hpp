@@ -82,7 +82,9 @@ struct FaultConfig {
       "Added to every axis of the gyro, on top of plant.sensors.gyro_bias.");
     v(s.accelerometer_bias, "accelerometer_bias", "m/s^2", Range{-100.0, 100.0},
       "Added to every axis of the accelerometer, likewise.");
-    v(s.contact, "contact", "The leg's contact flag reads true (stuck_on) or false (stuck_off).");
+    v(s.contact, "contact",
+      "The leg's contact flag reads true (stuck_on) or false (stuck_off), its force sensor what it "
+      "read before or 0.");
     v(s.motor_strength, "motor_strength", "1", Range{0.0, 2.0},
       "Torque of the weak motor as a share of what it should give.");
     v(s.torque_limit_scale, "torque_limit_scale", "1", Range{0.0, 1.0},

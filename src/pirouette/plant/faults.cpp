@@ -39,6 +39,10 @@ void Faults::spoil(SensorReading& reading) {
   spoil_imu(reading);
   if (reading.foot_contact && config_.contact != ContactFault::kNone)
     (*reading.foot_contact)[config_.leg] = config_.contact == ContactFault::kStuckOn;
+  if (reading.foot_force && config_.contact != ContactFault::kNone) {
+    const double before = (*last_good_->foot_force)[config_.leg];
+    (*reading.foot_force)[config_.leg] = config_.contact == ContactFault::kStuckOn ? before : 0.0;
+  }
 }
 
 void Faults::spoil_encoder(SensorReading& reading) const {

@@ -18,6 +18,10 @@ struct SensorConfig {
   double contact_threshold = 3.0;
   double contact_delay = 0.0;
   double contact_error = 0.0;
+  bool foot_forces = false;
+  double foot_force_scale = 1.0;
+  double foot_force_offset = 0.0;
+  double foot_force_noise = 0.0;
   double aid_rate = 0.0;
   double aid_noise = 0.005;
   double aid_yaw_noise = 0.01;
@@ -46,6 +50,16 @@ struct SensorConfig {
     v(s.contact_delay, "contact_delay", "s", Range{0.0, 0.5}, "Age of the contact flags.");
     v(s.contact_error, "contact_error", "1", Range{0.0, 1.0},
       "Probability that a contact flag is wrong, per sample and foot.");
+    v(s.foot_forces, "foot_forces",
+      "The feet report their load as a raw number, from which the controller makes its own contact "
+      "flags.");
+    v(s.foot_force_scale, "foot_force_scale", "1/N", Range{0.0, 1e3},
+      "Of that number, per normal force; each foot's is drawn per seed from half to one and a half "
+      "of it.");
+    v(s.foot_force_offset, "foot_force_offset", "1", Range{-1e4, 1e4},
+      "Of that number: what a foot in the air reads.");
+    v(s.foot_force_noise, "foot_force_noise", "1", Range{0.0, 1e4},
+      "Of that number, white, per sample and foot.");
     v(s.aid_rate, "aid_rate", "Hz", Range{0.0, 2000.0},
       "Poses of the trunk measured from outside (motion capture) or by camera; 0: none.");
     v(s.aid_noise, "aid_noise", "m", Range{0.0, 1.0}, "Its position, white, per sample and axis.");

@@ -20,7 +20,8 @@ SensorConfig effective(SensorConfig config, double period) {
   config.encoder_noise = config.joint_velocity_noise = 0.0;
   config.accelerometer_noise = config.accelerometer_bias = 0.0;
   config.gyro_noise = config.gyro_bias = 0.0;
-  config.contact_error = config.aid_noise = config.aid_yaw_noise = 0.0;
+  config.contact_error = config.foot_force_noise = 0.0;
+  config.aid_noise = config.aid_yaw_noise = 0.0;
   return config;
 }
 
@@ -80,7 +81,10 @@ Sensors::Sensors(const SensorConfig& config, std::uint64_t seed, double period)
     : config_(effective(config, period)),
       noise_(seed, RandomPurpose::kSensorNoise),
       contact_flags_(config_, seed),
+      foot_force_noise_(seed, RandomPurpose::kFootForces),
       aid_(config_, seed) {
+  for (const Leg leg : kLegs)
+    foot_force_scale_[leg] = config_.foot_force_scale * (0.5 + foot_force_noise_.uniform());
   RandomStream bias(seed, RandomPurpose::kSensorBias);
   accelerometer_bias_B_ = bias.gaussian3(config_.accelerometer_bias);
   gyro_bias_B_ = bias.gaussian3(config_.gyro_bias);
@@ -100,6 +104,14 @@ SensorReading Sensors::sample(const PlantTruth& truth, const PerLeg<double>& nor
                              accelerometer_bias_B_ + noise_.gaussian3(config_.accelerometer_noise);
   reading.w_WB_B = truth.base.w_WB_B + gyro_bias_B_ + noise_.gaussian3(config_.gyro_noise);
   if (config_.contact_flags) reading.foot_contact = contact_flags_.sample(truth.time, normal_force);
+  if (config_.foot_forces) {
+    reading.foot_force.emplace();
+    for (const Leg leg : kLegs) {
+      (*reading.foot_force)[leg] = config_.foot_force_offset +
+                                   foot_force_scale_[leg] * normal_force[leg] +
+                                   config_.foot_force_noise * foot_force_noise_.gaussian();
+    }
+  }
   reading.aid = aid_.sample(truth.time, truth.base);
   return reading;
 }

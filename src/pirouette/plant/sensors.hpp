@@ -72,6 +72,8 @@ class Sensors {
   SensorConfig config_;  ///< as it acts: without noise, biases and errors if it is ideal
   RandomStream noise_;
   ContactFlags contact_flags_;
+  RandomStream foot_force_noise_;
+  PerLeg<double> foot_force_scale_{};  ///< per N
   PositionAidSource aid_;
   Vec3 accelerometer_bias_B_;  ///< m/s^2
   Vec3 gyro_bias_B_;           ///< rad/s

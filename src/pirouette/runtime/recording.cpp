@@ -165,6 +165,8 @@ RecordedTick RecordedTick::of(const SensorReading& sensors, const MotionCommand&
   r.gyro_B = sensors.w_WB_B;
   r.has_foot_contact = sensors.foot_contact.has_value();
   if (sensors.foot_contact) r.foot_contact = *sensors.foot_contact;
+  r.has_foot_force = sensors.foot_force.has_value();
+  if (sensors.foot_force) r.foot_force = *sensors.foot_force;
   r.has_aid = sensors.aid.has_value();
   if (sensors.aid) {
     r.aid_position = sensors.aid->p_WB;
@@ -205,6 +207,7 @@ SensorReading RecordedTick::sensors() const {
   s.specific_force_B = specific_force_B;
   s.w_WB_B = gyro_B;
   if (has_foot_contact) s.foot_contact = foot_contact;
+  if (has_foot_force) s.foot_force = foot_force;
   if (has_aid) s.aid = PositionAid{aid_position, aid_yaw, aid_time};
   if (has_truth) {
     s.truth = BaseTruth{true_position, true_rotation.reshaped(3, 3), true_velocity,

@@ -30,6 +30,8 @@ struct RecordedTick {
   Vec3 gyro_B = Vec3::Zero();
   bool has_foot_contact = false;
   PerLeg<bool> foot_contact{};
+  bool has_foot_force = false;
+  PerLeg<double> foot_force{};
   bool has_aid = false;
   Vec3 aid_position = Vec3::Zero();
   double aid_yaw = 0.0;
@@ -70,6 +72,8 @@ struct RecordedTick {
     visit("gyro_B", "rad/s", "measured by the gyro", r.gyro_B);
     visit("has_foot_contact", "1", "the robot has contact sensing", r.has_foot_contact);
     visit("foot_contact", "1", "contact flags as measured", r.foot_contact);
+    visit("has_foot_force", "1", "the robot has force sensors in its feet", r.has_foot_force);
+    visit("foot_force", "1", "raw, as measured", r.foot_force);
     visit("has_aid", "1", "a pose from outside arrived", r.has_aid);
     visit("aid_position", "m", "its p_WB", r.aid_position);
     visit("aid_yaw", "rad", "its yaw", r.aid_yaw);

@@ -38,15 +38,19 @@ struct SensorReading {
       Vec3::Zero();  ///< m/s^2, accelerometer in body axes: (0, 0, +g) at rest on the flat
   Vec3 w_WB_B = Vec3::Zero();                ///< rad/s, gyro in body axes
   std::optional<PerLeg<bool>> foot_contact;  ///< absent where the robot has no contact sensing
-  std::optional<PositionAid> aid;            ///< present in ticks in which a measurement arrives
-  std::optional<BaseTruth> truth;            ///< absent on a real robot
+  /// Raw readings of the feet's force sensors in any unit, rising with the load; absent where there
+  /// are none. Where present they stand for foot_contact: the threshold is found at standing.
+  std::optional<PerLeg<double>> foot_force;
+  std::optional<PositionAid> aid;  ///< present in ticks in which a measurement arrives
+  std::optional<BaseTruth> truth;  ///< absent on a real robot
 
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [time, joint_position, joint_velocity, specific_force_B, w_WB_B, foot_contact, aid,
-           truth] = self;
-    visit(time, joint_position, joint_velocity, specific_force_B, w_WB_B, foot_contact, aid, truth);
+    auto& [time, joint_position, joint_velocity, specific_force_B, w_WB_B, foot_contact, foot_force,
+           aid, truth] = self;
+    visit(time, joint_position, joint_velocity, specific_force_B, w_WB_B, foot_contact, foot_force,
+          aid, truth);
   }
 };
 
