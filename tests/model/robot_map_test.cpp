@@ -92,6 +92,24 @@ TEST(RobotMap, RequiresAFreeTrunk) {
   EXPECT_NE(message.find("no free joint"), std::string::npos) << message;
 }
 
+TEST(RobotMap, RefusesARobotThatIsTiedToTheWorldOrToItself) {
+  const auto with = [](const std::string& constraint) {
+    return replaced(mini_cheetah(), "</mujoco>",
+                    "<equality>" + constraint + "</equality></mujoco>");
+  };
+  for (const std::string constraint :
+       {"<weld name=\"rig\" body1=\"trunk\" body2=\"world\"/>",
+        "<connect name=\"rig\" body1=\"world\" body2=\"FL_shank\" anchor=\"0 0 0\"/>"}) {
+    const std::string message = first_error(with(constraint));
+    EXPECT_NE(message.find("equality: constraint rig ties the robot to the world"),
+              std::string::npos)
+        << message;
+  }
+  const std::string message = first_error(with("<joint joint1=\"FR_hip\" joint2=\"FL_hip\"/>"));
+  EXPECT_NE(message.find("constraint number 1 ties joint FR_hip"), std::string::npos) << message;
+  EXPECT_TRUE(map_of(with("<weld active=\"false\" body1=\"trunk\" body2=\"world\"/>")).ok());
+}
+
 TEST(RobotMap, RequiresTheAxesOfTheConventions) {
   const std::string message =
       first_error(replaced(mini_cheetah(), "axis=\"1 0 0\"", "axis=\"-1 0 0\""));

@@ -146,6 +146,41 @@ Errors map_leg(const mjModel& model, const mjData& data, const std::string& file
   return errors;
 }
 
+/// Constraints that tie the robot to the world or one of its leg joints to something.
+Errors find_ties(const mjModel& model, const std::string& file, const RobotMap& map) {
+  Errors errors;
+  const auto report = [&](int i, const std::string& what) {
+    const char* given = mj_id2name(&model, mjOBJ_EQUALITY, i);
+    const std::string constraint = given ? given : "number " + std::to_string(i + 1);
+    errors.push_back({file, 0, "equality", "constraint " + constraint + " " + what});
+  };
+  for (int i = 0; i < model.neq; ++i) {
+    if (!model.eq_active0[i]) continue;
+    const int first = model.eq_obj1id[i], second = model.eq_obj2id[i];
+    const int type = model.eq_type[i];
+    if (type == mjEQ_CONNECT || type == mjEQ_WELD) {
+      const bool of_sites = model.eq_objtype[i] == mjOBJ_SITE;
+      const int one = of_sites ? model.site_bodyid[first] : first;
+      const int other = of_sites ? model.site_bodyid[second] : second;
+      const auto is_fixed = [&](int body) { return model.body_weldid[body] == 0; };
+      const auto is_robot = [&](int body) {
+        return body == map.trunk_body || is_below(model, body, map.trunk_body);
+      };
+      if ((is_fixed(one) && is_robot(other)) || (is_fixed(other) && is_robot(one)))
+        report(i, "ties the robot to the world; expected a robot that can move");
+    } else if (type == mjEQ_JOINT) {
+      for (const Leg leg : kLegs) {
+        for (const int joint : map.legs[leg].joint) {
+          if (joint == first || joint == second)
+            report(i, "ties joint " + std::string(joint_name(model, joint)) +
+                          "; expected legs whose joints move by themselves");
+        }
+      }
+    }
+  }
+  return errors;
+}
+
 }  // namespace
 
 Result<RobotMap> map_robot(const mjModel& model, const std::string& file) {
@@ -171,9 +206,12 @@ Result<RobotMap> map_robot(const mjModel& model, const std::string& file) {
       errors.insert(errors.end(), found.begin(), found.end());
     }
   }
+  if (errors.empty()) {
+    errors = find_ties(model, file, map);
+  } else {
+    errors.front().message += "; joints of this file: " + list_joints(model);
+  }
   if (errors.empty()) return map;
-
-  errors.front().message += "; joints of this file: " + list_joints(model);
   return errors;
 }
 

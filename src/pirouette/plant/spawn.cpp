@@ -1,6 +1,7 @@
 #include "pirouette/plant/spawn.hpp"
 
 #include <Eigen/Cholesky>
+#include <sstream>
 
 #include "pirouette/base/rotation.hpp"
 
@@ -104,10 +105,12 @@ Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& ter
     p_WB += com_error;
   }
   if (leg_error < kReachTolerance) return {};
-  return {Error{"", 0, "body.height",
-                "the robot cannot stand with its CoM " + std::to_string(com_height) +
-                    " m above this terrain: a foot misses the ground below its hip by " +
-                    std::to_string(leg_error) + " m"}};
+  std::ostringstream text;
+  text << "the robot cannot stand with its CoM " << com_height
+       << " m above the ground of plant.terrain: a foot misses the ground below its hip by "
+       << leg_error << " m; plant.trunk_com_offset, plant.trunk_mass_scale and plant.payload "
+       << "move the CoM too";
+  return {Error{"", 0, "body.height", text.str()}};
 }
 
 }  // namespace pirouette
