@@ -7,6 +7,7 @@ PRESET ?= release
 WERROR ?= OFF
 PREFIX ?= /usr/local
 FUZZ_RUNS ?= 250000
+RANDOM_CONFIGS ?= 300
 JOBS ?= $(shell nproc)
 ARGS ?=
 RUN ?=
@@ -114,6 +115,11 @@ test-python: build python .venv/test.stamp  ## tests of the Python package, some
 	@echo 'setup: wheels of requirements-test.txt into .venv'
 	@$(BIN)/pip install --quiet --requirement requirements-test.txt
 	@touch $@
+
+.PHONY: random-configs
+random-configs: build .venv/test.stamp  ## RANDOM_CONFIGS runs with parameters drawn over their whole ranges
+	@PIROUETTE_RANDOM_CONFIGS=$(RANDOM_CONFIGS) $(PYTHON) -m pytest --quiet \
+	  tests/python/random_config_test.py $(ARGS)
 
 .PHONY: fuzz
 fuzz: setup  ## FUZZ_RUNS random inputs for each reader of users' files, under sanitizers

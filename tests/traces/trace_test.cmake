@@ -25,6 +25,7 @@ if(NOT UPDATE AND NOT _written STREQUAL _origin)
   return()
 endif()
 
+file(REMOVE_RECURSE ${WORK_DIR}/run) # of a test that was killed
 set(_different "")
 set(_updated "")
 foreach(line IN LISTS _lines)

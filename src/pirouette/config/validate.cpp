@@ -64,7 +64,8 @@ Errors validate(const Config& config) {
 
   const double horizon = config.mpc.horizon * config.mpc.step_share * config.gait.period;
   require(config.mpc.solve_period <= horizon, "mpc.solve_period", "given ", config.mpc.solve_period,
-          " s; allowed: within the horizon of ", horizon, " s");
+          " s; allowed: within the horizon of ", horizon,
+          " s, mpc.horizon times mpc.step_share times gait.period");
   return errors;
 }
 
