@@ -8,7 +8,10 @@
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
+
+namespace pirouette {
+struct Config;
+}
 
 namespace pirouette::app {
 

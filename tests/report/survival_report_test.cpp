@@ -124,7 +124,7 @@ TEST_F(SurvivalReports, HaveATableWithWhatWasDrawn) {
   std::getline(table, second);
   EXPECT_TRUE(head.starts_with("trial,key,row,plant.friction,plant.terrain,seed,fell")) << head;
   EXPECT_NE(first.find(",flat," + std::to_string(experiment_.trials[0].seed)), first.npos) << first;
-  EXPECT_NE(second.find("," + experiment_.trials[1].config.plant.terrain + ","), second.npos);
+  EXPECT_NE(second.find("," + experiment_.trials[1].config->plant.terrain + ","), second.npos);
 }
 
 /// The configuration that `line`, made by repeat_command() without quoted words but --set, gives.
@@ -151,8 +151,8 @@ Config replayed(const std::string& line) {
 
 TEST_F(SurvivalReports, NameACommandThatRepeatsTheTrial) {
   for (const ExperimentTrial& trial : experiment_.trials) {
-    const std::string line = repeat_command(trial.config);
-    EXPECT_EQ(trial_key(replayed(line)), trial_key(trial.config)) << line;
+    const std::string line = repeat_command(*trial.config);
+    EXPECT_EQ(trial_key(replayed(line)), trial_key(*trial.config)) << line;
   }
 }
 

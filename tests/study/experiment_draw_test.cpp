@@ -11,6 +11,7 @@
 #include <set>
 #include <string>
 
+#include "pirouette/config/config.hpp"
 #include "pirouette/study/experiment_file.hpp"
 #include "support/temp_folder.hpp"
 
@@ -129,7 +130,7 @@ TEST_F(RandomExperiments, TakeTheRowsInTurnAndDrawForEachTrial) {
   std::set<std::int64_t> seeds;
   for (std::size_t i = 0; i < experiment.trials.size(); ++i) {
     const ExperimentTrial& trial = experiment.trials[i];
-    const Config& config = trial.config;
+    const Config& config = *trial.config;
     EXPECT_EQ(trial.row, i % 2);
     EXPECT_EQ(config.controller, i % 2 == 0 ? "pirouette" : "asc");
     EXPECT_EQ(config.plant.terrain.starts_with("slope:"), i % 2 == 1);
@@ -153,8 +154,8 @@ TEST_F(RandomExperiments, DrawTheSameForATrialHoweverManyThereAre) {
   ASSERT_EQ(few.value().trials.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
     EXPECT_EQ(few.value().trials[i].seed, many.value().trials[i].seed);
-    EXPECT_EQ(few.value().trials[i].config.plant.friction,
-              many.value().trials[i].config.plant.friction);
+    EXPECT_EQ(few.value().trials[i].config->plant.friction,
+              many.value().trials[i].config->plant.friction);
   }
   const Result<Experiment> other = load(kGood, {.draw_seed = 6});
   ASSERT_TRUE(other);

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <string>
 
+#include "pirouette/config/config.hpp"
 #include "support/temp_folder.hpp"
 
 namespace pirouette {
@@ -120,10 +121,10 @@ TEST_F(ExperimentFiles, ExpandRowsThenAxesThenSeeds) {
   ASSERT_EQ(experiment.trials.size(), 2u * 2u * 2u * 2u);
   const ExperimentTrial& second = experiment.trials[1];
   EXPECT_EQ(second.row, 0u);
-  EXPECT_EQ(second.config.run.seed, 5);
-  EXPECT_EQ(experiment.trials[2].config.profile, "realistic");
-  EXPECT_EQ(experiment.trials[4].config.plant.torsional_friction, 0.02);
-  EXPECT_EQ(experiment.trials[8].config.controller, "pirouette");
+  EXPECT_EQ(second.config->run.seed, 5);
+  EXPECT_EQ(experiment.trials[2].config->profile, "realistic");
+  EXPECT_EQ(experiment.trials[4].config->plant.torsional_friction, 0.02);
+  EXPECT_EQ(experiment.trials[8].config->controller, "pirouette");
 }
 
 TEST_F(ExperimentFiles, TakeRobotsAsTheFirstAxis) {
@@ -138,7 +139,7 @@ TEST_F(ExperimentFiles, TakeRobotsAsTheFirstAxis) {
   ASSERT_EQ(experiment.trials.size(), 2u * 16u);
   for (std::size_t i = 0; i < experiment.trials.size(); ++i) {
     const bool first = (i / 8) % 2 == 0;  // rows, then robots, then 2 x 2 axis values x 2 seeds
-    EXPECT_EQ(experiment.trials[i].config.robot, first ? "mini_cheetah" : copy.string());
+    EXPECT_EQ(experiment.trials[i].config->robot, first ? "mini_cheetah" : copy.string());
   }
 }
 
@@ -160,17 +161,17 @@ TEST_F(ExperimentFiles, RowsOverrideWhatIsCommonAndAxesOverrideRows) {
   const Result<Experiment> loaded =
       load(good_but("gait.period = 0.5", "gait.period = 0.5\nplant.torsional_friction = 0.1"));
   ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
-  EXPECT_EQ(loaded.value().trials.front().config.gait.period, 0.5);
-  EXPECT_EQ(loaded.value().trials.front().config.plant.torsional_friction, 0.005);
-  EXPECT_EQ(loaded.value().trials.back().config.gait.period, 0.4);
+  EXPECT_EQ(loaded.value().trials.front().config->gait.period, 0.5);
+  EXPECT_EQ(loaded.value().trials.front().config->plant.torsional_friction, 0.005);
+  EXPECT_EQ(loaded.value().trials.back().config->gait.period, 0.4);
 }
 
 TEST_F(ExperimentFiles, KeepTheTraceOfTheFirstSeedWhereAsked) {
   const Result<Experiment> loaded = load(kGood);
   ASSERT_TRUE(loaded);
   for (const ExperimentTrial& trial : loaded.value().trials) {
-    const bool wanted = trial.config.profile == "nominal" &&
-                        trial.config.plant.torsional_friction == 0.02 && trial.seed == 3;
+    const bool wanted = trial.config->profile == "nominal" &&
+                        trial.config->plant.torsional_friction == 0.02 && trial.seed == 3;
     EXPECT_EQ(trial.keep_trace, wanted);
   }
 }
@@ -180,7 +181,7 @@ TEST_F(ExperimentFiles, KeepATraceForEachOfSeveralValues) {
       load(good_but("torsional_friction = 0.02", "torsional_friction = [0.005, 0.02]"));
   ASSERT_TRUE(loaded) << loaded.errors().front().to_string();
   for (const ExperimentTrial& trial : loaded.value().trials) {
-    EXPECT_EQ(trial.keep_trace, trial.config.profile == "nominal" && trial.seed == 3);
+    EXPECT_EQ(trial.keep_trace, trial.config->profile == "nominal" && trial.seed == 3);
   }
 }
 
@@ -233,7 +234,7 @@ TEST_F(ExperimentFiles, LetTheCommandLineChangeSeedsAndTurns) {
   const Result<Experiment> loaded = load(kGood, {.seeds = 3, .turns = 0.5});
   ASSERT_TRUE(loaded);
   EXPECT_EQ(loaded.value().seeds, (std::vector<std::int64_t>{1, 2, 3}));
-  EXPECT_EQ(loaded.value().trials.front().config.run.turns, 0.5);
+  EXPECT_EQ(loaded.value().trials.front().config->run.turns, 0.5);
   const Result<Experiment> wrong = load(kGood, {.seeds = 0, .turns = -1.0});
   ASSERT_FALSE(wrong);
   ASSERT_EQ(wrong.errors().size(), 2u);

@@ -129,7 +129,7 @@ TEST_F(Sweeps, GoOnAfterAnInterruptionInTheMiddleOfALine) {
 TEST_F(Sweeps, RunATrialAgainWhoseTraceIsLost) {
   const Experiment experiment = load();
   const std::string whole = tables(experiment, options("run", 2));
-  const std::string key = trial_key(experiment.trials[2].config);
+  const std::string key = trial_key(*experiment.trials[2].config);
   ASSERT_TRUE(experiment.trials[2].keep_trace);
   const std::string trace = read(trace_path(folder_ / "run", key));
   ASSERT_FALSE(trace.empty());

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "pirouette/config/config.hpp"
 #include "pirouette/metrics/statistics.hpp"
 #include "pirouette/report/report_format.hpp"
 #include "pirouette/report/report_words.hpp"
@@ -28,7 +29,7 @@ const PrintedResult* printed_for(const Experiment& experiment, const ExperimentR
                                  const ExperimentTrial& trial) {
   if (row.paper.empty()) return nullptr;
   for (const PrintedResult& printed : experiment.printed) {
-    if (printed.row == row.paper && printed.profile == trial.config.profile &&
+    if (printed.row == row.paper && printed.profile == trial.config->profile &&
         applies(printed, experiment, trial.levels)) {
       return &printed;
     }
@@ -121,7 +122,7 @@ std::vector<std::string> Report::missed_bounds() const {
   for (const BoundCheck& check : check_bounds()) {
     if (check.missed.empty()) continue;
     missed.push_back(fill(text::kMissedBound, {{"place", place_text(*experiment, *check.entry)},
-                                               {"profile", check.entry->first->config.profile},
+                                               {"profile", check.entry->first->config->profile},
                                                {"metric", check.bound->metric},
                                                {"why", check.missed}}));
   }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "pirouette/config/config.hpp"
 #include "pirouette/config/config_doc.hpp"
 
 namespace pirouette {

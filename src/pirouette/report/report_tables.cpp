@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "pirouette/base/version.hpp"
+#include "pirouette/config/config.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/plant/plant.hpp"
 #include "pirouette/plant/terrain.hpp"
@@ -38,7 +39,7 @@ std::string Report::json() const {
   }
   root["entries"] = Json::array();
   for (const ReportEntry& entry : entries) {
-    const Config& config = entry.first->config;
+    const Config& config = *entry.first->config;
     Json out;
     out["label"] = entry.row->label;
     out["paper"] = entry.row->paper;
@@ -87,7 +88,7 @@ std::string Report::csv() const {
   }
   out << "\n";
   for (const ReportEntry& entry : entries) {
-    const Config& config = entry.first->config;
+    const Config& config = *entry.first->config;
     out << csv_cell(entry.row->label) << "," << config.profile;
     for (const ReportContext& context : report_contexts())
       out << "," << csv_cell(context.text(config));

@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "pirouette/base/version.hpp"
+#include "pirouette/config/config.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/metrics/statistics.hpp"
 #include "pirouette/plant/plant.hpp"
@@ -69,7 +70,7 @@ class MarkdownWriter {
   std::vector<std::string> profiles() const {
     std::vector<std::string> names;
     for (const ReportEntry& entry : report_.entries) {
-      const std::string& name = entry.first->config.profile;
+      const std::string& name = entry.first->config->profile;
       if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
     }
     return names;
@@ -78,7 +79,7 @@ class MarkdownWriter {
   void write_profile(const std::string& profile) {
     entries_.clear();
     for (const ReportEntry& entry : report_.entries) {
-      if (entry.first->config.profile == profile) entries_.push_back(&entry);
+      if (entry.first->config->profile == profile) entries_.push_back(&entry);
     }
     out_ << fill(text::kProfile, {{"profile", markdown(profile)}});
     write_table();
@@ -101,7 +102,7 @@ class MarkdownWriter {
 
   bool varies(const ReportContext& context) const {
     return std::any_of(entries_.begin(), entries_.end(), [&](const ReportEntry* entry) {
-      return context.text(entry->first->config) != context.text(entries_.front()->first->config);
+      return context.text(*entry->first->config) != context.text(*entries_.front()->first->config);
     });
   }
 
@@ -129,7 +130,7 @@ class MarkdownWriter {
       }
       common.push_back(
           fill(text::kContext, {{"name", without_unit(context.title)},
-                                {"value", markdown(context.text(entries_.front()->first->config))},
+                                {"value", markdown(context.text(*entries_.front()->first->config))},
                                 {"unit", unit_of(context.title)}}));
     }
     if (!common.empty()) {
@@ -159,7 +160,7 @@ class MarkdownWriter {
   void write_line(const ReportEntry& entry) {
     out_ << "| " << markdown(entry.row->label) << " |";
     for (const ReportContext* context : columns_) {
-      out_ << " " << markdown(context->text(entry.first->config)) << " |";
+      out_ << " " << markdown(context->text(*entry.first->config)) << " |";
     }
     for (const std::size_t axis : extra_axes()) {
       out_ << " " << markdown(experiment_.axes[axis].values[entry.first->levels[axis]]) << " |";

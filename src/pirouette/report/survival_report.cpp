@@ -160,7 +160,7 @@ class MarkdownWriter {
                                   {"row", markdown(experiment_.rows[trial.row].label)},
                                   {"seed", std::to_string(trial.seed)},
                                   {"outcome", outcome(report_.result->values[i], quantity)},
-                                  {"command", repeat_command(trial.config)}});
+                                  {"command", repeat_command(*trial.config)}});
     }
   }
 
@@ -246,7 +246,7 @@ std::string SurvivalReport::json() const {
                              {"row", experiment->rows[trial.row].label},
                              {"seed", trial.seed},
                              {"fell", fell(result->values[i])},
-                             {"replay", repeat_command(trial.config)}});
+                             {"replay", repeat_command(*trial.config)}});
   }
   root["missed_bounds"] = missed_bounds();
   constexpr int kIndent = 1;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <map>
 
+#include "pirouette/config/config.hpp"
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/report/report_format.hpp"
@@ -44,7 +45,7 @@ std::string trial_table(const Experiment& experiment, const SweepResult& result)
     for (std::size_t axis = 0; axis < experiment.axes.size(); ++axis) {
       out += "," + csv_cell(experiment.axes[axis].values[trial.levels[axis]]);
     }
-    out += drawn_cells(trial.config, drawn) + "," + std::to_string(trial.seed);
+    out += drawn_cells(*trial.config, drawn) + "," + std::to_string(trial.seed);
     for (const std::string& name : names) {
       const auto found = result.values[i].find(name);
       const bool known = found != result.values[i].end() && found->second;

@@ -80,10 +80,10 @@ class Expansion {
     if (!config) return;
     const bool traced = is_traced(settings);
     for (const std::int64_t seed : experiment_.seeds) {
-      ExperimentTrial trial{row, levels, seed, traced && seed == experiment_.seeds.front(),
-                            *config};
-      trial.config.run.seed = seed;
-      experiment_.trials.push_back(std::move(trial));
+      Config of_seed = *config;
+      of_seed.run.seed = seed;
+      experiment_.trials.push_back({row, levels, seed, traced && seed == experiment_.seeds.front(),
+                                    std::make_shared<const Config>(std::move(of_seed))});
     }
   }
 
@@ -105,7 +105,9 @@ class Expansion {
       std::optional<Config> config = load(row, settings);
       if (!config) continue;
       config->run.seed = drawn_seed(random.seed, number);
-      experiment_.trials.push_back({row, {}, config->run.seed, false, *std::move(config)});
+      const std::int64_t seed = config->run.seed;
+      experiment_.trials.push_back(
+          {row, {}, seed, false, std::make_shared<const Config>(*std::move(config))});
     }
   }
 

@@ -4,15 +4,17 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "pirouette/base/result.hpp"
-#include "pirouette/config/config.hpp"
 #include "pirouette/study/experiment_draw.hpp"
 
 namespace pirouette {
+
+struct Config;
 
 /// One configuration of the robot: a controller bundle and what differs from it.
 struct ExperimentRow {
@@ -42,11 +44,11 @@ struct ExperimentAxis {
 
 /// One run: a row, a value of each axis, a seed; in a random experiment a row and what was drawn.
 struct ExperimentTrial {
-  std::size_t row = 0;              ///< index into Experiment::rows
-  std::vector<std::size_t> levels;  ///< index into each axis' values
-  std::int64_t seed = 0;            ///< run.seed
-  bool keep_trace = false;          ///< the trace is kept
-  Config config;                    ///< of this trial
+  std::size_t row = 0;                   ///< index into Experiment::rows
+  std::vector<std::size_t> levels;       ///< index into each axis' values
+  std::int64_t seed = 0;                 ///< run.seed
+  bool keep_trace = false;               ///< the trace is kept
+  std::shared_ptr<const Config> config;  ///< of this trial
 };
 
 /// A column of the tables of the experiment.

@@ -3,9 +3,9 @@
 
 #include <string>
 
-#include "pirouette/config/config.hpp"
-
 namespace pirouette {
+
+struct Config;
 
 /// `text` as one word of a POSIX shell. Control characters become "?".
 std::string shell_word(const std::string& text);

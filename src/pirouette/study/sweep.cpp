@@ -58,10 +58,10 @@ std::vector<Job> distinct_jobs(const Experiment& experiment, std::vector<std::st
   std::vector<Job> jobs;
   std::map<std::string, std::size_t> places;
   for (const ExperimentTrial& trial : experiment.trials) {
-    keys.push_back(trial_key(trial.config));
+    keys.push_back(trial_key(*trial.config));
     const auto [place, is_new] = places.try_emplace(keys.back(), jobs.size());
     if (is_new) {
-      jobs.push_back({keys.back(), experiment.rows[trial.row].label, &trial.config, false});
+      jobs.push_back({keys.back(), experiment.rows[trial.row].label, trial.config.get(), false});
     }
     Job& job = jobs[place->second];
     job.keep_trace = job.keep_trace || trial.keep_trace;
@@ -325,7 +325,7 @@ Errors check_sweep(const Experiment& experiment) {
     const bool first =
         experiment.random ? i < experiment.rows.size() : trial.seed == experiment.seeds.front();
     if (!first) continue;
-    for (Error error : check_trial(trial.config)) {
+    for (Error error : check_trial(*trial.config)) {
       if (error.file.empty()) error.file = file;
       if (texts.insert(error.to_string()).second) errors.push_back(std::move(error));
     }
