@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "pirouette/controller/body_horizon.hpp"
+
 namespace pirouette {
 namespace {
 
@@ -80,6 +82,73 @@ TEST(ForcePlanner, SolvesAsOftenAtAnyRateAndAtLeastEveryTick) {
   for (const double rate : {100.0, 200.0, 500.0, 1000.0}) EXPECT_EQ(solutions(config, rate), 50);
   config.solve_period = 0.004;
   EXPECT_EQ(solutions(config, 100.0), 100);
+}
+
+/// A trot that turns by 2 rad/s on a slope, 0.1 s after its start.
+class Trotting : public Standing {
+ public:
+  Trotting() : Standing(MpcConfig{}) {
+    for (int i = 0; i < 50; ++i) gait = clock.update(true, kTick);
+    plane.a1 = 0.2;
+    reference.twist = {Vec2(0.4, 0.1), 2.0};
+    reference.v_WG_W = Vec3(0.4, 0.1, 0.08);
+    reference.rpy.yaw = 0.3;
+    state.p_WG += Vec3(0.02, -0.03, 0.01);  // off the reference
+    for (const Leg leg : kLegs) {
+      contacts[leg].in_contact = gait.leg[leg].stance;
+      contacts[leg].n_W = plane.normal();
+      footholds[leg].p_WC = contacts[leg].p_WC + Vec3(0.05, 0.02, 0.01);
+    }
+  }
+  MpcInput input() const {
+    return planner.mpc_input({state, gait, clock, contacts, plane, footholds, reference});
+  }
+};
+
+TEST(ForcePlanner, AStepIsToEndAtTheReferenceAndTurnsAboutItInItsMiddle) {
+  const Trotting robot;
+  const MpcInput in = robot.input();
+  EXPECT_NEAR(in.dt, MpcConfig{}.step_share * GaitConfig{}.period, 1e-15);
+  for (int k = 0; k < MpcConfig{}.horizon; ++k) {
+    const MpcStep& step = in.steps[static_cast<std::size_t>(k)];
+    const BodyMotion end = reference_after(robot.reference, robot.plane, kHeight, (k + 1) * in.dt);
+    const BodyMotion middle =
+        reference_after(robot.reference, robot.plane, kHeight, (k + 0.5) * in.dt);
+    EXPECT_EQ(step.reference.p_WG, end.p_WG) << k;
+    EXPECT_EQ(step.reference.v_WG_W, end.v_WG_W) << k;
+    EXPECT_EQ(step.reference.rpy, end.rpy) << k;
+    EXPECT_EQ(step.p_WG_mid, middle.p_WG) << k;  // not the measured CoM
+    EXPECT_EQ(step.rpy_mid.yaw, middle.rpy.z()) << k;
+  }
+  EXPECT_EQ(in.now.p_WG, robot.state.p_WG);
+}
+
+TEST(ForcePlanner, FeetStandAsTheGaitSaysInTheMiddleOfAStep) {
+  const Trotting robot;
+  const MpcInput in = robot.input();
+  int changes_within_first_half = 0;
+  for (int k = 1; k < MpcConfig{}.horizon; ++k) {
+    for (const Leg leg : kLegs) {
+      const bool in_middle = robot.clock.phase_at(leg, (k + 0.5) * in.dt).stance;
+      EXPECT_EQ(in.steps[static_cast<std::size_t>(k)].stance[leg], in_middle) << k;
+      if (robot.clock.phase_at(leg, k * in.dt).stance != in_middle) ++changes_within_first_half;
+    }
+  }
+  EXPECT_GT(changes_within_first_half, 0);  // else the test could not tell middle from start
+}
+
+TEST(ForcePlanner, ForcesActWhereAFootStandsUntilItLiftsAndThenWhereItWillStand) {
+  const Trotting robot;
+  const MpcInput in = robot.input();
+  for (int k = 0; k < MpcConfig{}.horizon; ++k) {
+    const MpcStep& step = in.steps[static_cast<std::size_t>(k)];
+    for (const Leg leg : kLegs) {
+      const LegPhase ahead = robot.clock.phase_at(leg, (k + 0.5) * in.dt);
+      const bool still_there =
+          robot.contacts[leg].in_contact && ahead.stride == robot.gait.leg[leg].stride;
+      EXPECT_EQ(step.p_WC[leg], still_there ? robot.contacts[leg].p_WC : robot.footholds[leg].p_WC);
+    }
+  }
 }
 
 TEST(ForcePlanner, HoldsTheLastGoodForcesAndCountsFailures) {

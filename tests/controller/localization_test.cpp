@@ -212,6 +212,75 @@ TEST(Localization, CreepsDownASlopeButNotOnItsSteps) {
   EXPECT_EQ(creep_on_slope(CreepModelMode::kOff, false).slip_per_twist_W, Vec3::Zero());
 }
 
+TEST(Localization, TheCreepPointsDownhillWhicheverWayTheRobotTurns) {
+  const auto shift = [](double yaw_rate) {
+    const auto velocity = [&](CreepModelMode mode) {
+      Config config;
+      config.creep.mode = mode;
+      config.estimation.attitude_time_constant = 1000.0;
+      Standing robot(config);
+      robot.plane.a1 = 0.27;
+      for (const Leg leg : kLegs) {
+        robot.walk(leg, true, 0.5);
+        robot.contacts[leg].measured = true;
+        robot.contacts[leg].n_W = robot.plane.normal();
+      }
+      robot.sensors.w_WB_B.z() = yaw_rate;
+      for (int i = 0; i < 10; ++i) robot.estimate();
+      return robot.out.state.v_WB_W.x();
+    };
+    return velocity(CreepModelMode::kStored) - velocity(CreepModelMode::kOff);
+  };
+  EXPECT_LT(shift(0.7), 0.0);
+  EXPECT_LT(shift(-0.7), 0.0);
+}
+
+// The end of a stance counts as little as its beginning: the foot may already lift or slip.
+TEST(Localization, AFootAtEitherEndOfItsStanceIsTrustedLess) {
+  const auto speed = [](double progress) {
+    Standing robot{Config{}};
+    for (const Leg leg : kLegs) {
+      robot.walk(leg, true, progress);
+      robot.contacts[leg].measured = true;
+      // All feet say that the trunk moves; the accelerometer says that it rests.
+      const Vec3 forwards(0.1, 0.0, 0.0);
+      const LegGeometry& g = robot.model.legs()[leg];
+      robot.sensors.joint_velocity[leg] =
+          foot_jacobian(g, robot.sensors.joint_position[leg]).inverse() * -forwards;
+    }
+    robot.estimate();
+    return robot.out.state.v_WB_W.x();
+  };
+  const double window = EstimationConfig{}.trust_window;
+  ASSERT_GT(window, 0.0);
+  EXPECT_LT(speed(0.1 * window), 0.5 * speed(0.5));
+  EXPECT_LT(speed(1.0 - 0.1 * window), 0.5 * speed(0.5));
+  EXPECT_NEAR(speed(0.1 * window), speed(1.0 - 0.1 * window), 1e-12);
+}
+
+// On a slope a sphere's centre is r sqrt(1 + s^2) above the point of the plane below it, not r.
+TEST(Localization, TheHeightOnASlopeIsThatOfASphereThatTouchesThePlane) {
+  constexpr double kGradient = 0.5;
+  Config config;
+  Standing robot(config);
+  const double radius = robot.model.legs()[Leg::kFR].foot_radius;
+  robot.plane.a1 = kGradient;
+  // The plane through the feet as they stand, one above the other along x.
+  for (const Leg leg : kLegs) {
+    robot.contacts[leg].measured = true;
+    robot.contacts[leg].n_W = robot.plane.normal();
+  }
+  double mean_height = 0.0;
+  for (const Leg leg : kLegs)
+    mean_height +=
+        (robot.out.state.p_WF[leg].z() - robot.plane.height(robot.out.state.p_WF[leg].head<2>())) /
+        kLegCount;
+  robot.plane.a0 = mean_height - radius * std::sqrt(1.0 + square(kGradient));
+  const double before = robot.out.state.p_WB.z();
+  for (int i = 0; i < 500; ++i) robot.estimate();
+  EXPECT_NEAR(robot.out.state.p_WB.z(), before, 0.1 * radius * (std::sqrt(1.25) - 1.0));
+}
+
 // The trunk turns and the legs do not: seen from the ground the shanks twist at the trunk's rate.
 TEST(Localization, TheCreepOfTwistingShanksMovesTheTrunk) {
   const auto velocity_along_slope = [](CreepModelMode mode) {

@@ -42,6 +42,9 @@ class ForcePlanner {
   /// Forces of the last successful solution; status kHeld while solutions have failed since.
   ContactForces update(const ForcePlannerInput& in) noexcept;
 
+  /// What the MPC is asked: contacts and references step by step, lever arms about the reference.
+  MpcInput mpc_input(const ForcePlannerInput& in) const noexcept;
+
   int failures() const { return failures_; }  ///< failed solutions in a row
   /// us, of the last update; 0: the MPC was not solved
   double solve_us() const { return solve_us_; }
@@ -56,8 +59,6 @@ class ForcePlanner {
   }
 
  private:
-  MpcInput mpc_input(const ForcePlannerInput& in) const noexcept;
-
   MpcConfig config_;
   int ticks_per_solve_;
   double standing_period_;
