@@ -121,6 +121,10 @@ random-configs: build .venv/test.stamp  ## RANDOM_CONFIGS runs with parameters d
 	@PIROUETTE_RANDOM_CONFIGS=$(RANDOM_CONFIGS) $(PYTHON) -m pytest --quiet \
 	  tests/python/random_config_test.py $(ARGS)
 
+.PHONY: mutation
+mutation: build  ## builds each mutant of tests/mutation and prints those that no test notices; ARGS='--only creep'
+	@$(PYTHON) scripts/mutation.py --jobs $(JOBS) $(ARGS)
+
 .PHONY: fuzz
 fuzz: setup  ## FUZZ_RUNS random inputs for each reader of users' files, under sanitizers
 	@bash scripts/system_packages.sh clang-19 libclang-rt-19-dev
