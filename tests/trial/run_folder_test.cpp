@@ -134,13 +134,65 @@ TEST_F(RunFolderTest, CleansUpAfterAKilledProcess) {
   const fs::path part = folder_ / ".b.pirouette-part";
   fs::create_directory(part);
   std::ofstream(part / kTraceFile) << "half";
-  std::ofstream(part / "lock");
+  std::ofstream(part / "lock") << "part of a run that pirouette writes\n";
   const fs::path with_notes = folder_ / ".c.pirouette-part";
   fs::create_directory(with_notes);
   std::ofstream(with_notes / "note") << "mine";
   leave_run(folder_ / "a", "1");
   EXPECT_FALSE(fs::exists(part));
   EXPECT_EQ(content(with_notes / "note"), "mine");
+}
+
+TEST_F(RunFolderTest, LeavesWhatOnlyLooksLikeAPartOfARunAlone) {
+  const auto fill = [](const fs::path& folder) {
+    fs::create_directory(folder);
+    for (const char* name : {kRunFile, kMetricsFile, kTraceFile, "lock"}) {
+      std::ofstream(folder / name) << "mine";
+    }
+  };
+  const auto is_whole = [](const fs::path& folder) {
+    return content(folder / kRunFile) == "mine" && content(folder / kMetricsFile) == "mine" &&
+           content(folder / kTraceFile) == "mine" && content(folder / "lock") == "mine";
+  };
+  const fs::path linked = folder_ / "precious", named = folder_ / ".b.pirouette-part";
+  fill(linked);
+  fill(named);
+  fs::create_directory_symlink(linked, folder_ / ".x.pirouette-part");
+  leave_run(folder_ / "a", "1");
+  EXPECT_TRUE(is_whole(linked));
+  EXPECT_TRUE(is_whole(named));
+  // In the way of a run's own part.
+  EXPECT_FALSE(RunFolder::open(folder_ / "x").ok());
+  EXPECT_FALSE(RunFolder::open(folder_ / "b").ok());
+  EXPECT_TRUE(is_whole(linked));
+  EXPECT_TRUE(is_whole(named));
+}
+
+TEST_F(RunFolderTest, IsNotNamedLikeAPart) {
+  EXPECT_FALSE(RunFolder::open(folder_ / ".x.pirouette-part").ok());
+}
+
+TEST_F(RunFolderTest, AnEmptyFolderThatIsThereStaysTheSameFolder) {
+  const fs::path path = folder_ / "a";
+  fs::create_directory(path);
+  fs::permissions(path, fs::perms::owner_all);
+  const fs::path before = fs::current_path();
+  fs::current_path(path);
+  leave_run(".", "1");
+  EXPECT_EQ(fs::current_path(), path);  // a moved folder would be gone
+  fs::current_path(before);
+  EXPECT_EQ(fs::status(path).permissions(), fs::perms::owner_all);
+  EXPECT_EQ(content(path / kMetricsFile), "1");
+}
+
+TEST_F(RunFolderTest, ReplacesWhatWasMadeOfAnEarlierRunAndRecorded) {
+  const fs::path path = folder_ / "a";
+  leave_run(path, "1");
+  for (const char* name : {"trace.csv", "trace.mcap"}) std::ofstream(path / name) << "old";
+  std::ofstream(path / kRecordFile, std::ios::app) << "trace.csv\n";
+  leave_run(path, "2", true);
+  EXPECT_FALSE(fs::exists(path / "trace.csv"));
+  EXPECT_EQ(content(path / "trace.mcap"), "old");  // not in the record
 }
 
 TEST_F(RunFolderTest, RefusesALinkToNothingAndADiskThatIsTooSmall) {

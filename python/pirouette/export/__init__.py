@@ -9,7 +9,7 @@ from importlib import import_module
 from pathlib import Path
 
 from pirouette import command
-from pirouette.run_folder import RunError, load
+from pirouette.run_folder import RunError, add_to_record, load
 
 # Option, file in the run folder, module and function that writes it, meaning. Modules are loaded
 # when used: each needs another library.
@@ -37,6 +37,8 @@ def write(folder: Path, kind: str, out: Path | None) -> Path:
     out = out or folder / name
     with command.whole_file(out) as part:
         getattr(import_module(f"{__name__}.{module}"), function)(run, part)
+    if out == folder / name:
+        add_to_record(folder, name)
     return out
 
 

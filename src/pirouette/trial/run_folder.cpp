@@ -25,6 +25,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kLockFile = "lock";
 constexpr const char* kPartSuffix = ".pirouette-part";
+constexpr std::string_view kLockText = "part of a run that pirouette writes\n";
 constexpr const char* kRecordHead =
     "# What pirouette wrote into this folder. --force replaces these files and nothing else.";
 
@@ -36,11 +37,16 @@ Error system_error(const fs::path& path, const char* what) {
   return out_error(path, std::string(what) + ": " + std::strerror(errno));
 }
 
-bool is_run_file(const std::string& name) {
-  return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end();
+bool may_be_recorded(const std::string& name) {
+  return std::find(kRunFiles.begin(), kRunFiles.end(), name) != kRunFiles.end() ||
+         std::find(kDerivedFiles.begin(), kDerivedFiles.end(), name) != kDerivedFiles.end();
 }
 
 bool is_regular(const fs::path& path) { return fs::is_regular_file(fs::symlink_status(path)); }
+
+bool is_part_name(const std::string& name) {
+  return name.starts_with('.') && name.ends_with(kPartSuffix);
+}
 
 /// Names in the record of `folder` of files that are there; empty without a record of ours.
 std::vector<std::string> recorded_files(const fs::path& folder) {
@@ -49,8 +55,8 @@ std::vector<std::string> recorded_files(const fs::path& folder) {
   std::string line;
   if (!std::getline(record, line) || line != kRecordHead) return names;
   while (std::getline(record, line)) {
-    // A name that is no run file is not believed, whoever wrote it there.
-    if (is_run_file(line) && is_regular(folder / line)) names.push_back(line);
+    // Another name is not believed, whoever wrote it there.
+    if (may_be_recorded(line) && is_regular(folder / line)) names.push_back(line);
   }
   return names;
 }
@@ -120,7 +126,27 @@ Result<fs::path> final_place(const fs::path& path) {
   }
   place = fs::weakly_canonical(place, error);
   if (error) return out_error(path, error.message());
+  if (is_part_name(place.filename().string())) {
+    return out_error(place, "is a name of unfinished runs, which are cleaned up; allowed: another");
+  }
   return place;
+}
+
+/// True when this product made the part folder `part`: its lock says so, or nothing but an empty
+/// lock is in it. A link, or a folder that only has the name, is somebody else's.
+bool is_ours(const fs::path& part) {
+  std::error_code error;
+  if (!fs::is_directory(fs::symlink_status(part, error))) return false;
+  if (is_regular(part / kLockFile)) {
+    std::ifstream lock(part / kLockFile, std::ios::binary);
+    const std::string text((std::istreambuf_iterator<char>(lock)), {});
+    if (text == kLockText) return true;
+    if (!text.empty()) return false;
+  }
+  const fs::directory_iterator entries(part, error);
+  return !error && std::all_of(begin(entries), end(entries), [](const fs::directory_entry& entry) {
+    return entry.path().filename() == kLockFile && is_regular(entry.path());
+  });
 }
 
 fs::path part_of(const fs::path& path) {
@@ -137,8 +163,14 @@ int take_lock(const fs::path& part) {
   }, there{};
   if (::flock(lock, LOCK_EX | LOCK_NB) == 0 && ::fstat(lock, &held) == 0 &&
       ::stat(file.c_str(), &there) == 0) {
-    if (held.st_ino == there.st_ino && held.st_dev == there.st_dev) return lock;
-    errno = ENOENT;  // its owner moved the folder to its place meanwhile
+    const bool same = held.st_ino == there.st_ino && held.st_dev == there.st_dev;
+    if (same && is_ours(part) && ::ftruncate(lock, 0) == 0 &&
+        ::pwrite(lock, kLockText.data(), kLockText.size(), 0) ==
+            static_cast<ssize_t>(kLockText.size())) {
+      return lock;
+    }
+    // ENOENT: its owner moved the folder to its place meanwhile.
+    errno = same ? EEXIST : ENOENT;
   }
   const int why = errno;
   ::close(lock);
@@ -165,7 +197,9 @@ void clean_left_overs(const fs::path& parent) {
   std::error_code error;
   for (const fs::directory_entry& entry : fs::directory_iterator(parent, error)) {
     const std::string name = entry.path().filename().string();
-    if (!name.starts_with('.') || !name.ends_with(kPartSuffix)) continue;
+    if (!is_part_name(name) || !is_ours(entry.path()) || !is_regular(entry.path() / kLockFile)) {
+      continue;
+    }
     const int lock = take_lock(entry.path());
     if (lock < 0) continue;
     remove_part(entry.path());
@@ -179,6 +213,9 @@ Result<int> lock_part(const fs::path& path) {
   for (;;) {
     if (::mkdir(part.c_str(), 0777) != 0 && errno != EEXIST) {
       return system_error(path, "cannot be created");
+    }
+    if (fs::exists(fs::symlink_status(part)) && !is_ours(part)) {
+      return out_error(part, "is in the way and was not made by pirouette; move it away first");
     }
     const int lock = take_lock(part);
     if (lock >= 0) return lock;
@@ -213,7 +250,13 @@ Result<RunFolder> RunFolder::open(const fs::path& path, const RunFolderOptions& 
   folder.part_ = part_of(folder.path_);
   clear_part(folder.part_);
   if (const auto wrong = check_space(folder.path_, options.size)) return *wrong;
-  // Replacing needs to write into the folder itself, not only beside it.
+  // A folder that is there stays, with its owner and permissions, and gets the files.
+  struct stat own {
+  }, beside{};
+  if (::stat(folder.path_.c_str(), &own) == 0 && ::stat(folder.part_.c_str(), &beside) == 0 &&
+      own.st_dev != beside.st_dev) {
+    return out_error(folder.path_, "is a disk of its own; allowed: a folder in it");
+  }
   if (fs::exists(folder.path_, error) && ::access(folder.path_.c_str(), W_OK | X_OK) != 0) {
     return system_error(folder.path_, "cannot be written");
   }
@@ -266,7 +309,7 @@ std::optional<Error> RunFolder::commit() {
   if (auto error = write(kRecordFile, record_text(names))) return error;
 
   std::error_code error;
-  if (!fs::exists(path_, error) || fs::is_empty(path_, error)) {
+  if (!fs::exists(path_, error)) {
     fs::rename(part_, path_, error);
     if (error) return out_error(path_, "cannot be written: " + error.message());
     fs::remove(path_ / kLockFile, error);

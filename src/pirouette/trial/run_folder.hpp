@@ -20,10 +20,13 @@ inline constexpr const char* kTraceFile = "trace.npy";       ///< rows of TraceR
 inline constexpr const char* kTerrainFile = "terrain.npy";   ///< heights of the ground
 /// Names of the files in the folder that this product wrote, one on each line.
 inline constexpr const char* kRecordFile = "files.txt";
-/// Every name that the record may contain; `pirouette report` adds its own.
-inline constexpr std::array kRunFiles = {kRunFile,      kMetricsFile,   kTraceFile,
-                                         kTerrainFile,  kRecordingFile, kRecordingStartFile,
-                                         "report.html", kRecordFile};
+/// Names of the files that a run writes.
+inline constexpr std::array kRunFiles = {kRunFile,     kMetricsFile,   kTraceFile,
+                                         kTerrainFile, kRecordingFile, kRecordingStartFile,
+                                         kRecordFile};
+/// Names that `pirouette report` and `export` add to the record.
+inline constexpr std::array kDerivedFiles = {"report.html", "trace.csv", "trace.mcap",
+                                             "trace.parquet", "video.mp4"};
 
 inline constexpr double kTerrainHalfExtent = 1.5;  ///< m, of terrain.npy along x and y
 inline constexpr double kTerrainPitch = 0.01;      ///< m, between its points
@@ -35,9 +38,10 @@ struct RunFolderOptions {
 };
 
 /// A folder under construction in `.NAME.pirouette-part` beside its final place, locked against
-/// other processes. commit() moves it there; without commit() the destructor removes it, so that a
-/// failure leaves nothing behind. The part folder of a killed process is removed by the next one.
-/// No file is removed or replaced that the record (kRecordFile) of its folder does not list.
+/// other processes. commit() moves it there, or its files into a folder that is there already;
+/// without commit() the destructor removes it, so that a failure leaves nothing behind. The part
+/// folder of a killed process is removed by the next one. No file is removed or replaced that the
+/// record (kRecordFile) of its folder does not list.
 class RunFolder {
  public:
   /// Creates the part folder, and missing parents. Errors: `path` is a file, a dangling link, not
