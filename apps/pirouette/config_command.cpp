@@ -64,7 +64,7 @@ int ConfigCommand::run() const {
   } else if (metrics_->parsed()) {
     std::cout << metrics_markdown();
   } else {
-    return report({{"config", 0, "", "needs one of check, dump, doc, trace, metrics"}});
+    return report({{"config", 0, "", "needs one of check, dump, doc, trace, recording, metrics"}});
   }
   return kDone;
 }

@@ -191,7 +191,15 @@ std::vector<std::string> ConfigOptions::overrides(Errors& errors) const {
           {s.option, 0, "", "given " + quoted(*s.text) + "; allowed: X,Y in m, such as 0.1,-0.2"});
       continue;
     }
+    if (s.key == "run.angle_deg" && std::strtod(value->c_str(), nullptr) == 0.0) {
+      errors.push_back({s.option, 0, "",
+                        "given " + quoted(*value) +
+                            "; allowed: an angle in "
+                            "degrees other than 0"});
+      continue;
+    }
     out.push_back(s.key + "=" + *value);
+    if (s.key == "run.turns") out.push_back("run.angle_deg=0");  // of a file: they were typed
     if (s.key == "run.point") out.push_back("run.fixed_point=true");
   }
   if (sensors_ && *sensors_ != "ideal" && *sensors_ != "noisy") {

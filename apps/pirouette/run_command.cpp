@@ -168,7 +168,7 @@ std::string RunCommand::default_folder(const Config& config) const {
   name += "-" + config.plant.terrain + "-";
   name += config.run.path.empty() ? short_number(config.run.rate)
                                   : std::filesystem::path(config.run.path).stem().string();
-  if (config.run.angle_deg != 0.0) name += "-" + short_number(config.run.angle_deg) + "deg";
+  if (config.run.angle_deg != 0.0) name += "-angle" + short_number(config.run.angle_deg);
   if (config.run.path.empty() && config.run.velocity != standard.run.velocity) {
     name += "-" + short_number(config.run.velocity[0]) + "," + short_number(config.run.velocity[1]);
   }

@@ -87,7 +87,9 @@ void add_motion(Table& table, const Metrics& m) {
   }
   table.row("turns", fixed(m.turns_done, "", 3));
   if (m.angle_error_deg) {
-    table.row("angle", fixed(360.0 * m.turns_done, "deg", 2) + ", error " +
+    const double turned = std::copysign(360.0 * m.turns_done, m.context.yaw_rate);
+    table.row("angle", fixed(turned, "deg", 2) + " of " +
+                           fixed(turned - *m.angle_error_deg, "deg", 2) + ", error " +
                            fixed(m.angle_error_deg, "deg", 2));
   }
   table.row("yaw rate",

@@ -141,8 +141,16 @@ void define_simulation(nb::module_& module) {
             if (const Errors errors = self.reset(); !errors.empty()) raise(errors);
           },
           "Back to the start; `command` stays.")
-      .def("step", &Simulation::step, "ticks"_a = 1, nb::call_guard<nb::gil_scoped_release>(),
-           "Simulates this many control periods, 1 / control.rate each.")
+      .def(
+          "step",
+          [](Simulation& self, std::int64_t ticks) {
+            if (ticks < 0) {
+              raise({{"", 0, "ticks", "given " + std::to_string(ticks) + "; allowed: 0 and more"}});
+            }
+            const nb::gil_scoped_release released;
+            self.step(ticks);
+          },
+          "ticks"_a = 1, "Simulates this many control periods, 1 / control.rate each.")
       .def(
           "push",
           [](Simulation& self, const nb::object& dv_W) {

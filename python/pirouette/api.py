@@ -90,8 +90,8 @@ def metrics(
     mass in the world; yaw, roll, pitch: rad, shape (n,), true, yaw wrapped or not. What was
     commanded: yaw_rate in rad/s; velocity in m/s, heading axes; point in m, absent: where com
     begins. Give the part to be measured only, without standing and settling. The keys are those of
-    `pirouette config metrics` that this motion can tell. Raises Error for other shapes and for
-    times that are not evenly spaced.
+    `pirouette config metrics` that this motion can tell. Raises Error for other shapes,
+    values that are not finite and times that are not evenly spaced.
     """
     seconds = np.asarray(time, dtype=float)
     place = np.asarray(com, dtype=float)
@@ -102,6 +102,11 @@ def metrics(
         raise Error("time: the steps differ; allowed: evenly spaced, increasing times")
     if place.ndim != 2 or place.shape[0] != len(seconds) or place.shape[1] not in (2, 3):
         raise Error(f"com: given shape {place.shape}; allowed: ({len(seconds)}, 2) or (..., 3)")
+    given = {"com": place[:, :2], "yaw": yaw, "yaw_rate": yaw_rate, "velocity": velocity}
+    given |= {"point": point, "roll": roll, "pitch": pitch}
+    for name, values in given.items():
+        if values is not None and not np.all(np.isfinite(np.asarray(values, dtype=float))):
+            raise Error(f"{name}: holds values that are no number; allowed: finite ones")
     place = np.ascontiguousarray(place[:, :2])
     text = _core.metrics(
         1.0 / steps.mean(),

@@ -24,6 +24,7 @@ class Options(TypedDict, total=False):
     profile: str  # of the plant: nominal or realistic
     rate: float  # rad/s, positive turns left
     turns: float  # to record after settling
+    angle: float  # deg, to turn by, positive to the left; instead of turns
     terrain: str  # flat, slope:10, stairs:0.03x0.20, ...
     estimator: str  # kalman or truth
     sensors: str  # noisy or ideal
@@ -42,6 +43,7 @@ class Options(TypedDict, total=False):
 KEYS = {
     "rate": "run.rate",
     "turns": "run.turns",
+    "angle": "run.angle_deg",
     "terrain": "plant.terrain",
     "estimator": "estimation.source",
     "seed": "run.seed",

@@ -115,6 +115,7 @@ wrong 'run.turns: makes a trial of' spin --rate 1e-16
 wrong '--laps: given 0' turn --path figure8 --laps 0
 wrong '--path' spin --path figure8
 wrong 'check, dump, doc' config
+wrong 'back.toml: is no configuration but a path' spin --config back.toml
 wrong 'FILE' config check
 
 # Terrain and robot.
@@ -155,6 +156,7 @@ gait.stand_time = 0.2
 label = "one"
 controller = "asc"
 TOML
+wrong 'experiment.toml: is no configuration but an experiment' config check experiment.toml
 sed 's/asc/acs/' sandbox/experiment.toml > sandbox/bad_row.toml
 sed 's/turns = 0.02/tunrs = 1/' sandbox/experiment.toml > sandbox/bad_key.toml
 sed 's/label = "one"/label = "o\\u001bne"/' sandbox/experiment.toml > sandbox/bad_label.toml

@@ -303,3 +303,20 @@ def test_what_needs_the_compiled_library_says_how_to_get_it():
     assert done.returncode == 2
     assert done.stderr.startswith("error: ")
     assert "make python" in done.stderr
+
+
+def test_what_is_no_number_is_refused_or_given_back():
+    simulation = pirouette.Simulation(terrain="rough:0.04")
+    assert np.isnan(simulation.ground([math.nan], [0.0])).all()
+    with pytest.raises(pirouette.Error, match="ticks: given -5; allowed: 0 and more"):
+        simulation.step(-5)
+    with pytest.raises(pirouette.Error, match="com: holds values that are no number"):
+        pirouette.metrics([0, 1], [[math.nan] * 3] * 2, [0, 1], yaw_rate=0.7)
+    with pytest.raises(pirouette.Error, match="yaw_rate: holds values that are no number"):
+        pirouette.metrics([0, 1], [[0.0] * 3] * 2, [0, 1], yaw_rate=math.nan)
+
+
+def test_a_turn_by_an_angle_is_an_option():
+    result = pirouette.run(angle=-30, set={"gait.stand_time": 0.2})
+    assert result.metrics["angle_error_deg"] == pytest.approx(0.0, abs=1.0)
+    assert result.metrics["context"]["yaw_rate"] == -0.7

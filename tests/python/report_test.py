@@ -2,11 +2,12 @@
 
 import io
 import shutil
+import subprocess
 import time
 
 import numpy as np
 import pytest
-from conftest import ARTEFACTS
+from conftest import ARTEFACTS, PROGRAM
 from PIL import Image
 from selenium.webdriver.common.by import By
 from selenium.webdriver.support.ui import WebDriverWait
@@ -184,3 +185,18 @@ def test_runs_stand_side_by_side(simulate, spin_folder, tmp_path):
 def artefact(name: str):
     ARTEFACTS.mkdir(parents=True, exist_ok=True)
     return ARTEFACTS / name
+
+
+def test_a_fall_can_be_reported_and_exported(call, tmp_path):
+    folder = tmp_path / "fell"
+    fault = ["--set", "plant.faults.motor_strength=0", "--set", "plant.faults.start=3"]
+    fell = subprocess.run(
+        [PROGRAM, "spin", "--turns", "1", "--quiet", "--out", folder, *fault], capture_output=True
+    )
+    assert fell.returncode == 1
+    for module, *options in (("report",), ("export", "--csv")):
+        result = call(module, folder, *options)
+        assert result.returncode == 0, result.stderr
+    # Files of its own, which --force may replace.
+    listed = (folder / "files.txt").read_text().splitlines()
+    assert {"report.html", "trace.csv"} <= set(listed)

@@ -179,9 +179,11 @@ TEST_F(RandomExperiments, NameWhatIsWrong) {
             "with {} in it");
   EXPECT_EQ(error_of("[0.4, 1.0]}", "[-2.0, -1.0]}").substr(0, 37),
             "random.toml:5: plant.friction: given ");
-  // A value out of range that is drawn late, if at all.
-  EXPECT_EQ(error_of("[1, 10]", "[39.9, 90]").substr(0, 38),
-            "random.toml:16: plant.terrain: \"slope:");
+  // A value out of range that is drawn late, if at all: the range is told.
+  EXPECT_EQ(error_of("[0.4, 1.0]", "[0.4, 5.01]"),
+            "random.toml:5: plant.friction: given [0.4, 5.01]; allowed: 0.0 to 5.0");
+  EXPECT_EQ(error_of("[1, 10]", "[1, 40.1]").substr(0, 52),
+            "random.toml:16: plant.terrain: \"slope:40.1\": the slo");
   EXPECT_EQ(error_of("plant.friction =", "plant.frction =").substr(0, 56),
             "random.toml:5: plant.frction: unknown key; did you mean ");
   EXPECT_EQ(error_of("run.rate = {choice", "run.seed = {choice"),

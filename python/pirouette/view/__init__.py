@@ -27,10 +27,10 @@ def assignment(text: str) -> tuple[str, Any]:
 
 
 def origin(text: str) -> str:
-    """SCHEME://NAME[:PORT] of a page, as browsers send it."""
+    """SCHEME://NAME[:PORT] of a page, as browsers send it. Raises Error."""
     if not re.fullmatch(r"https?://[^/\s]+", text):
-        raise argparse.ArgumentTypeError(
-            f"given {text!r}; allowed: http://NAME[:PORT] or https://NAME[:PORT]"
+        raise Error(
+            f"--allow-origin: given {text!r}; allowed: http://NAME[:PORT] or https://NAME[:PORT]"
         )
     return text.lower()
 
@@ -55,7 +55,6 @@ def parsed() -> argparse.Namespace:
     option(
         "--allow-origin",
         metavar="URL",
-        type=origin,
         action="append",
         help="page that may steer the robot, such as http://robot.local:8080; always those of "
         "this machine and of --host",
@@ -82,7 +81,7 @@ def serve(arguments: argparse.Namespace) -> None:
     config, host, port = options.pop("config", None), options.pop("host"), options.pop("port")
     check_address(host, port)
     options["set"] = dict(options.get("set", []))
-    origins = options.pop("allow_origin", [])
+    origins = [origin(text) for text in options.pop("allow_origin", [])]
     view = View(config, options, host, port, origins)
     print(f"Live view: {view.address}, Ctrl-C ends it", flush=True)
     if host in ("0.0.0.0", "::") and not origins:

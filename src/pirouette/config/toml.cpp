@@ -209,6 +209,13 @@ class LayerReader {
 std::optional<Layer> parse_file(const fs::path& path, Errors& errors) {
   std::optional<toml::table> table = parse_toml_file(path, errors);
   if (!table) return std::nullopt;
+  const char* other = nullptr;
+  if (table->contains("rows")) other = "an experiment: pirouette sweep or montecarlo runs it";
+  if (table->contains("points")) other = "a path: pirouette turn --path follows it";
+  if (other != nullptr) {
+    errors.push_back({path.string(), 0, "", std::string("is no configuration but ") + other});
+    return std::nullopt;
+  }
   return Layer{path.string(), true, *std::move(table)};
 }
 

@@ -1,5 +1,7 @@
 #include "pirouette/controller/spin_controller.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 
@@ -226,7 +228,11 @@ void SpinController::Impl::stand_down(ControllerStatus why) {
 
 const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
                                                const MotionCommand& wanted) noexcept {
-  if (is_stood_down(last.status)) return last.command;
+  if (is_stood_down(last.status)) {
+    // Time goes on in the trace; everything else stays as it was when the controller stood down.
+    if (std::isfinite(reading.time)) last.sensors.time = std::max(last.sensors.time, reading.time);
+    return last.command;
+  }
   if (!sensor_guard.update(reading, wanted, last.command, last.gait.walking)) {
     stand_down(ControllerStatus::kBadInput);
     return last.command;

@@ -181,6 +181,7 @@ double Terrain::height(const Vec2& xy) const {
 }
 
 double Terrain::grid_height(const Vec2& xy) const {
+  if (!xy.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   const Vec2 cells =
       ((xy.array() + kHalfExtent) / kGridPitch).cwiseMax(0.0).cwiseMin(kGridSize - 1.0);
   const int column = std::min(static_cast<int>(cells.x()), kGridSize - 2);

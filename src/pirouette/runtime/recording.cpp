@@ -39,6 +39,12 @@ std::optional<Error> write_start(const fs::path& folder, const RecordingStart& s
 Result<RecordingStart> read_start(const fs::path& folder) {
   const fs::path path = folder / kRecordingStartFile;
   std::ifstream stream(path, std::ios::binary);
+  if (!stream && !fs::exists(path)) {
+    return Error{path.string(), 0, "",
+                 fs::is_directory(folder)
+                     ? "missing: this run was not recorded; run it with --record"
+                     : "no such folder"};
+  }
   if (!stream) return Error{path.string(), 0, "", "cannot be read"};
   std::string head;
   std::getline(stream, head);

@@ -29,6 +29,10 @@ Errors load_motion(const TrialConfig& run, TrialSetup& setup) {
   if (run.path.empty()) {
     command.v_H = Vec2(run.velocity[0], run.velocity[1]);
     command.yaw_rate = run.rate;
+    if (run.angle_deg * run.rate < 0.0) {  // the angle says which way
+      command.v_H = -command.v_H;
+      command.yaw_rate = -run.rate;
+    }
     return {};
   }
   const Result<std::filesystem::path> name = resolve_path(run);

@@ -10,6 +10,7 @@
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml.hpp"
 #include "pirouette/config/toml_node.hpp"
+#include "pirouette/plant/terrain.hpp"
 #include "pirouette/study/configured_trial.hpp"
 #include "pirouette/study/experiment_reader.hpp"
 #include "pirouette/study/plain_text.hpp"
@@ -87,7 +88,35 @@ class Expansion {
     }
   }
 
+  /// Ranges that hold more than is allowed, whether or not a trial draws it.
+  void check_ends(const std::vector<ExperimentDraw>& draws) {
+    for (const ExperimentDraw& draw : draws) {
+      if (!draw.values.empty()) continue;
+      Error error{experiment_.file.string(), draw.line, draw.key, ""};
+      const std::optional<Range> range = parameter_range(draw.key);
+      const double lowest = draw.either_sign ? -draw.max : draw.min;
+      if (range && draw.text.empty() && (lowest < range->min || draw.max > range->max)) {
+        error.message = "given [" + toml_literal(lowest) + ", " + toml_literal(draw.max) +
+                        "]; allowed: " + toml_literal(range->min) + " to " +
+                        toml_literal(range->max);
+        report(error);
+      }
+      if (draw.key != "plant.terrain") continue;
+      for (const double end : {draw.min, draw.max}) {
+        ExperimentDraw only = draw;
+        only.min = only.max = end;
+        const Result<TerrainSpec> terrain = parse_terrain(without_quotes(drawn_value(only, 0, 0)));
+        if (terrain) continue;
+        error.message = terrain.errors().front().message;
+        report(error);
+      }
+    }
+  }
+
   void draw_trials(const RandomPart& random) {
+    check_ends(random.draws);
+    for (const ExperimentRow& row : experiment_.rows) check_ends(row.draws);
+    if (!errors_.empty()) return;
     const std::size_t rows = experiment_.rows.size();
     for (std::int64_t number = 0; number < random.trials; ++number) {
       const std::size_t row = static_cast<std::size_t>(number) % rows;

@@ -185,10 +185,6 @@ class Trial final : public MotionSource, public Observer {
     const MotionCommand& command = setup_.motion;
     commanded_ = {command.point.value_or(Vec2::Zero()), command.v_H, command.yaw_rate,
                   command.hold_heading, std::nullopt};
-    if (turns_by_angle(setup_) && setup_.trial.angle_deg * command.yaw_rate < 0.0) {
-      commanded_.v_H = -command.v_H;
-      commanded_.yaw_rate = -command.yaw_rate;
-    }
     yaw_.reset(rpy_from_rotation(start_pose().R_WB).yaw);
   }
 

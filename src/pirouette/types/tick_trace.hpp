@@ -85,7 +85,7 @@ void TickTrace::columns(const TickTrace& t, Visit&& visit) {
   visit(
       "status", "1",
       "0 standing, 1 walking, 2 fallen, 3 bad input, 4 solver failed, 5 bad command, 6 self-check "
-      "failed",
+      "failed, 7 gyro against legs; from 2 on every column but time keeps its last value",
       static_cast<int>(t.status));
   visit("self_check", "1",
         "0 running, 1 passed, 2 skipped, else what it found: types/self_check.hpp",
