@@ -15,6 +15,8 @@ STANDING, SETTLING, DURATION = 1.0, 5.0, 24.0  # s
 CONTACT_FORCE = 3.0  # N
 LEGS = ("FR", "FL", "RR", "RL")
 
+if len(sys.argv) != 2:
+    sys.exit(f"usage: python {sys.argv[0]} ROBOT.xml")
 robot = mujoco.MjSpec.from_file(sys.argv[1])
 robot.worldbody.add_geom(type=mujoco.mjtGeom.mjGEOM_PLANE, size=[1, 1, 1])
 robot.option.timestep, robot.option.impratio = 0.001, 10.0
