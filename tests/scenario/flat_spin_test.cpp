@@ -95,7 +95,7 @@ TEST(SpinOfAnotherRobot, NeedsNothingButTheHeightOfItsCentreOfMass) {
 TEST(SpinWithoutContactSensing, TheScheduleStandsInForTheFlags) {
   const Metrics m = spin({"plant.sensors.contact_flags=false", "run.turns=4"});
   EXPECT_FALSE(m.fell);
-  EXPECT_LE(m.com.radius_mean_mm.value_or(1e9), 15.0);
+  EXPECT_LE(m.com.radius_mean_mm.value_or(1e9), 1.0);  // twice what is measured
 }
 
 TEST(SpinAtOtherTimings, AnyPeriodAndDutyOfTheTrotHolds) {
