@@ -235,6 +235,24 @@ TEST(Localization, TheCreepPointsDownhillWhicheverWayTheRobotTurns) {
   EXPECT_LT(shift(-0.7), 0.0);
 }
 
+TEST(Localization, ATrunkThatTurnsOverOneFootMovesAboutIt) {
+  Config config;
+  config.estimation.attitude_time_constant = 1000.0;
+  Standing robot(config);
+  robot.walk(Leg::kFR, true, 0.5);
+  robot.contacts[Leg::kFR].measured = true;
+  robot.contacts[Leg::kFR].n_W = Vec3::UnitZ();
+  for (const Leg leg : {Leg::kFL, Leg::kRR, Leg::kRL}) robot.walk(leg, false, 0.5);
+  const Vec3 w(0.0, 0.0, 0.7);
+  robot.sensors.w_WB_B = w;
+  for (int i = 0; i < 10; ++i) robot.estimate();
+  const Vec3 about_foot = -w.cross(robot.out.feet[Leg::kFR].p_BF);
+  const Vec3 v = robot.out.state.v_WB_W;
+  // Ten ticks are only a beginning, but in the right direction.
+  EXPECT_GT(v.dot(about_foot), 0.01 * about_foot.squaredNorm());
+  EXPECT_GT(v.normalized().dot(about_foot.normalized()), 0.95);
+}
+
 // The end of a stance counts as little as its beginning: the foot may already lift or slip.
 TEST(Localization, AFootAtEitherEndOfItsStanceIsTrustedLess) {
   const auto speed = [](double progress) {
