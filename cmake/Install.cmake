@@ -34,6 +34,9 @@ install(
   PATTERN "config/toml_node.hpp" EXCLUDE
   PATTERN "model/mujoco.hpp" EXCLUDE
   PATTERN "model/robot_map.hpp" EXCLUDE
+  PATTERN "model/robot_reader.hpp" EXCLUDE
+  PATTERN "model/*_finder.hpp" EXCLUDE
+  PATTERN "model/spec_repair.hpp" EXCLUDE
   PATTERN "plant/scene.hpp" EXCLUDE
   PATTERN "plant/spawn.hpp" EXCLUDE
 )

@@ -25,7 +25,7 @@ Result<SpinController> controller_of(const fs::path& folder) {
   const Result<TrialSetup> setup = set_up(config.value());
   if (!setup) return setup.errors();
   Result<SpinController> controller =
-      SpinController::create(setup.value().controller, setup.value().plant.mjcf);
+      SpinController::create(setup.value().controller, setup.value().plant.robot);
   if (controller) controller.value().follow(setup.value().path);
   return controller;
 }

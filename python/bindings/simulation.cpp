@@ -9,31 +9,31 @@
 namespace pirouette {
 namespace {
 
-Result<Plant> create_plant(const Config& config, const std::string& mjcf) {
-  return Plant::create(config.plant, plant_setup(config, mjcf));
+Result<Plant> create_plant(const Config& config, const RobotDescription& robot) {
+  return Plant::create(config.plant, plant_setup(config, robot));
 }
 
 }  // namespace
 
 Result<Simulation> Simulation::create(const Config& config) {
-  const Result<std::string> mjcf = resolve_robot(config);
-  if (!mjcf) return mjcf.errors();
-  Result<SpinController> controller = SpinController::create(config, mjcf.value());
+  const Result<RobotDescription> description = resolve_robot(config);
+  if (!description) return description.errors();
+  Result<SpinController> controller = SpinController::create(config, description.value());
   if (!controller) return controller.errors();
-  Result<Plant> plant = create_plant(config, mjcf.value());
+  Result<Plant> plant = create_plant(config, description.value());
   if (!plant) return plant.errors();
   // The plant has read the same text.
   const Terrain terrain(parse_terrain(config.plant.terrain).value(),
                         static_cast<std::uint64_t>(config.run.seed));
   return Simulation(
-      config, mjcf.value(), terrain,
+      config, description.value(), terrain,
       std::make_unique<Robot>(std::move(plant).value(), std::move(controller).value()));
 }
 
-Simulation::Simulation(Config config, std::string mjcf, Terrain terrain,
+Simulation::Simulation(Config config, RobotDescription description, Terrain terrain,
                        std::unique_ptr<Robot> robot)
     : config_(std::move(config)),
-      mjcf_(std::move(mjcf)),
+      description_(std::move(description)),
       terrain_(std::move(terrain)),
       robot_(std::move(robot)),
       standing_ticks_(std::llround(config_.gait.stand_time * config_.control.rate)) {
@@ -44,7 +44,7 @@ Simulation::Simulation(Config config, std::string mjcf, Terrain terrain,
 }
 
 Errors Simulation::reset() {
-  Result<Plant> plant = create_plant(config_, mjcf_);
+  Result<Plant> plant = create_plant(config_, description_);
   if (!plant) return plant.errors();
   robot_ = std::make_unique<Robot>(std::move(plant).value(), std::move(robot_->controller));
   begin();

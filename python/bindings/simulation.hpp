@@ -49,13 +49,14 @@ class Simulation {
     ControlLoop loop{world, controller};
   };
 
-  Simulation(Config config, std::string mjcf, Terrain terrain, std::unique_ptr<Robot> robot);
+  Simulation(Config config, RobotDescription description, Terrain terrain,
+             std::unique_ptr<Robot> robot);
 
   void begin();
   void tick();
 
   Config config_;
-  std::string mjcf_;
+  RobotDescription description_;
   Terrain terrain_;
   std::unique_ptr<Robot> robot_;
   YawUnwrapper yaw_;

@@ -45,15 +45,22 @@ const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/estimation", kBelowStages},
     {"src/pirouette/lowlevel", kBelowStages},
     {"src/pirouette/controller", kBelowStages + kStages},
-    {"src/pirouette/config", Patterns{"base/*", "path/path.hpp"} + kConfigs},
+    // Defaults follow the robot: its file is read for them.
+    {"src/pirouette/config",
+     Patterns{"base/*", "path/path.hpp", "types/robot_scale.hpp", "model/robot_description.hpp",
+              "model/robot_model.hpp", "controller/robot_defaults.hpp"} +
+         kConfigs},
     {"src/pirouette/runtime", {"base/*", "types/*", "controller/controller.hpp"}},
-    // Of the model only the map of names, which both sides must read alike.
+    // Of the model only what reads the robot's file, which both sides must read alike.
     {"src/pirouette/plant",
-     {"base/*", "types/*", "model/mujoco.hpp", "model/robot_map.hpp", "runtime/world.hpp"}},
+     {"base/*", "types/*", "model/mujoco.hpp", "model/robot_description.hpp", "model/robot_map.hpp",
+      "model/robot_reader.hpp", "runtime/world.hpp"}},
     {"src/pirouette/metrics", kBelowTrial},
     {"src/pirouette/trial",
      kBelowTrial + Patterns{"controller/*", "runtime/*", "plant/*", "metrics/*"}},
-    {"src/pirouette/study", kBelowTrial + kWorld + Patterns{"config/*", "model/robot_model.hpp"}},
+    {"src/pirouette/study",
+     kBelowTrial + kWorld +
+         Patterns{"config/*", "model/robot_description.hpp", "model/robot_model.hpp"}},
     {"src/pirouette/report", {"base/*", "config/*", "metrics/*", "plant/*", "trial/*", "study/*"}},
 
     {"apps/pirouette",
@@ -80,6 +87,7 @@ const std::map<std::string, Patterns> kLibraries = {
     {"CLI/", {"apps/pirouette"}},
     {"nanobind/", {"python/bindings"}},
     {"benchmark/", {"bench"}},
+    {"tinyxml2.h", {"src/pirouette/config"}},
 };
 
 bool matches(const std::string& text, const std::string& pattern) {

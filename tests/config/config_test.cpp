@@ -12,6 +12,7 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/data_folders.hpp"
 #include "pirouette/config/toml.hpp"
+#include "support/robot_text.hpp"
 
 namespace pirouette {
 namespace {
@@ -69,8 +70,8 @@ class ConfigFiles : public ::testing::Test {
   /// A data folder with robots `ant` (no overlay) and `bee` (with one), and the bundles.
   void use_own_data_folder(const std::string& bee_overlay) {
     const fs::path data = folder_ / "data";
-    write(data / "robots" / "ant" / "ant.xml", "<mujoco/>");
-    write(data / "robots" / "bee" / "bee.xml", "<mujoco/>");
+    write(data / "robots" / "ant" / "ant.xml", test::text_of_robot());
+    write(data / "robots" / "bee" / "bee.xml", test::text_of_robot());
     write(data / "config" / "robots" / "bee.toml", bee_overlay);
     write(data / "config" / "controllers" / "mit.toml", "[gait]\nduty = 0.5\n");
     write(data / "config" / "controllers" / "pirouette.toml", "[gait]\nduty = 0.6\n");
@@ -355,7 +356,7 @@ TEST_F(ConfigFiles, AnUnknownRobotListsTheKnownOnes) {
   use_own_data_folder("");
   EXPECT_EQ(error_of("robot = 'bea'\n"),
             "my.toml:1: robot: given \"bea\"; allowed: ant, bee; did you mean bee?; or the path of "
-            "an MJCF file ending in .xml");
+            "an MJCF (.xml), URDF (.urdf) or robot.toml file");
   const Result<Config> flagged = load_config({.robot = "nowhere.xml"});
   ASSERT_FALSE(flagged);
   EXPECT_EQ(flagged.errors()[0].to_string(), "--robot: robot: given \"nowhere.xml\": no such file");
@@ -373,10 +374,10 @@ TEST_F(ConfigFiles, ARobotIsAFolderNameOrAFile) {
   use_own_data_folder("");
   Config config;
   config.robot = "ant";
-  EXPECT_EQ(resolve_robot(config).value(), (data_dir() / "robots/ant/ant.xml").string());
+  EXPECT_EQ(resolve_robot(config).value().file, (data_dir() / "robots/ant/ant.xml").string());
   write(folder_ / "mine.xml", "<mujoco/>");
   config.robot = (folder_ / "mine.xml").string();
-  EXPECT_EQ(resolve_robot(config).value(), config.robot);
+  EXPECT_EQ(resolve_robot(config).value().file, config.robot);
   config.robot = "../robots/ant";
   EXPECT_FALSE(resolve_robot(config));
 }

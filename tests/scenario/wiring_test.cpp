@@ -84,7 +84,7 @@ SpinController first_seconds(const ConfigSources& sources, const Wiring& wiring)
   if (!setup) throw std::runtime_error(setup.errors().front().to_string());
   Result<Plant> plant = Plant::create(setup.value().world, setup.value().plant);
   Result<SpinController> created =
-      SpinController::create(setup.value().controller, setup.value().plant.mjcf);
+      SpinController::create(setup.value().controller, setup.value().plant.robot);
   if (!plant || !created) throw std::runtime_error("no robot");
   SpinController& controller = created.value();
   const BaseTruth start = plant.value().truth().base;

@@ -25,7 +25,7 @@ inline Config ideal_config(const std::string& terrain = "flat") {
 /// `xy` (m) and `yaw` (rad): where the robot starts.
 inline Result<Plant> create_plant(const Config& config, const std::string& mjcf = kRobot,
                                   const Vec2& xy = Vec2::Zero(), double yaw = 0.0) {
-  PlantSetup setup = plant_setup(config, mjcf);
+  PlantSetup setup = plant_setup(config, RobotDescription(mjcf));
   setup.start = xy;
   setup.start_yaw = yaw;
   return Plant::create(config.plant, setup);

@@ -20,7 +20,8 @@ struct Config : ControllerConfig {
 
   template <class Self, class Visit>
   static void fields(Self& s, Visit&& v) {
-    v(s.robot, "robot", "Name of a folder under robots/, or path of an MJCF file.");
+    v(s.robot, "robot",
+      "Name of a folder under robots/, or path of an MJCF, URDF or robot.toml file.");
     v(s.controller, "controller", "Bundle of switches: mit, fkm, asc or pirouette.");
     v(s.profile, "profile", "Hardware and world: nominal or realistic.");
     ControllerConfig::fields(s, v);

@@ -131,6 +131,8 @@ std::vector<ParameterGroup> describe(const Config& config) {
   return groups;
 }
 
+std::string toml_literal(const std::string& text) { return literal(text); }
+
 std::string toml_literal(double value) {
   const std::string text = shortest(value);
   const bool whole = text.find_first_not_of("-0123456789") == std::string::npos;

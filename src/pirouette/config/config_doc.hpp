@@ -37,6 +37,9 @@ std::vector<ParameterGroup> describe(const Config& config);
 /// Config.
 std::string dump_toml(const Config& config);
 
+/// `text` as a TOML string in quotes.
+std::string toml_literal(const std::string& text);
+
 /// Shortest TOML float that reads back as the same double: 0.1, 5.0, 2e-4.
 std::string toml_literal(double value);
 

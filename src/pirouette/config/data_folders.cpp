@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "pirouette/config/config.hpp"
+#include "pirouette/config/robot_file.hpp"
 #include "pirouette/config/suggest.hpp"
 
 namespace pirouette {
@@ -86,18 +87,21 @@ std::vector<std::string> toml_stems(const fs::path& folder) {
   });
 }
 
-Result<std::string> resolve_robot(const Config& config) {
+Result<RobotDescription> resolve_robot(const Config& config) {
   const fs::path path = config.robot;
-  if (path.extension() == ".xml") {
-    if (fs::is_regular_file(path)) return path.string();
+  if (is_robot_file(path)) {
+    if (fs::is_regular_file(path)) return load_robot_file(path);
     return Error{"", 0, "robot", "given " + in_quotes(config.robot) + ": no such file"};
   }
   const std::vector<std::string> robots = known_robots();
   if (std::binary_search(robots.begin(), robots.end(), config.robot)) {
-    return (data_dir() / "robots" / config.robot / (config.robot + ".xml")).string();
+    const fs::path folder = data_dir() / "robots" / config.robot;
+    if (fs::exists(folder / "robot.toml")) return load_robot_file(folder / "robot.toml");
+    return load_robot_file(folder / (config.robot + ".xml"));
   }
   return Error{"", 0, "robot",
-               unknown_name(config.robot, robots) + "; or the path of an MJCF file ending in .xml"};
+               unknown_name(config.robot, robots) +
+                   "; or the path of an MJCF (.xml), URDF (.urdf) or robot.toml file"};
 }
 
 }  // namespace pirouette

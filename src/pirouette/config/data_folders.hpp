@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "pirouette/base/result.hpp"
+#include "pirouette/model/robot_description.hpp"
 
 namespace pirouette {
 
@@ -17,9 +18,10 @@ struct Config;
 /// tree.
 std::filesystem::path data_dir();
 
-/// Path of the robot's MJCF: robots/<robot>/<robot>.xml of the data folder, or config.robot itself
-/// when that ends in .xml. An error for a robot that does not exist lists the known ones.
-Result<std::string> resolve_robot(const Config& config);
+/// The robot of `config.robot`: robots/<robot>/robot.toml of the data folder, else
+/// robots/<robot>/<robot>.xml, or the file itself (is_robot_file). An error for a robot that does
+/// not exist lists the known ones.
+Result<RobotDescription> resolve_robot(const Config& config);
 
 /// Names under robots/ of the data folder, sorted.
 std::vector<std::string> known_robots();

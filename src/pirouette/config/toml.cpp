@@ -10,6 +10,7 @@
 
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/config/data_folders.hpp"
+#include "pirouette/config/robot_defaults.hpp"
 #include "pirouette/config/suggest.hpp"
 #include "pirouette/config/toml_node.hpp"
 #include "pirouette/config/validate.hpp"
@@ -333,6 +334,10 @@ Result<Config> load_config(const ConfigSources& sources) {
                        [](const Error& a, const Error& b) { return a.line < b.line; });
     }
   };
+  config.robot = robot.name;
+  for (const Error& error : fit_to_robot(config))
+    errors.push_back(error.key == "robot" ? make_error(robot.origin, error.key, error.message)
+                                          : error);
   read(parse_own_layers(robot, controller, profile, errors));
   read(user_layers);
   config.robot = robot.name;

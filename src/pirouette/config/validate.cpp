@@ -19,7 +19,7 @@ Errors validate(const Config& config) {
     errors.push_back({"", 0, key, message.str()});
   };
 
-  if (const Result<std::string> robot = resolve_robot(config); !robot) errors = robot.errors();
+  if (const auto robot = resolve_robot(config); !robot) errors = robot.errors();
 
   if (!config.run.path.empty()) {
     const Result<std::filesystem::path> path = resolve_path(config.run);

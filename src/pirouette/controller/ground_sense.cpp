@@ -2,12 +2,12 @@
 
 namespace pirouette {
 
-GroundSense::GroundSense(const TerrainConfig& config, double foot_radius)
+GroundSense::GroundSense(const TerrainConfig& config, double foot_radius, const RobotScale& scale)
     : config_(config),
       foot_radius_(foot_radius),
       plane_estimator_(config),
       classifier_(config),
-      memory_(config) {}
+      memory_(config, scale) {}
 
 TerrainPlane GroundSense::start(const std::array<Vec3, kLegCount>& contacts) {
   const std::array<double, kLegCount> weights = {1.0, 1.0, 1.0, 1.0};

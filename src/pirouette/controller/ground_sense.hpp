@@ -8,6 +8,7 @@
 #include "pirouette/types/foot_contacts.hpp"
 #include "pirouette/types/foothold_plan.hpp"
 #include "pirouette/types/gait_phase.hpp"
+#include "pirouette/types/robot_scale.hpp"
 #include "pirouette/types/robot_state.hpp"
 
 namespace pirouette {
@@ -30,7 +31,7 @@ struct GroundSenseOutput {
 class GroundSense {
  public:
   /// `foot_radius` (m) of the rolling foot; 0 for a point foot.
-  GroundSense(const TerrainConfig& config, double foot_radius);
+  GroundSense(const TerrainConfig& config, double foot_radius, const RobotScale& scale = {});
 
   /// Starts with, and returns, the plane through the contact points `contacts` (m, world).
   TerrainPlane start(const std::array<Vec3, kLegCount>& contacts);

@@ -38,11 +38,11 @@ class JointControl {
  public:
   /// `foot_radius` (m) of the rolling foot; 0 for a point foot.
   JointControl(const WbcConfig& wbc, const MpcConfig& limits, const JointConfig& joint,
-               const PerLeg<LegGeometry>& legs, double foot_radius)
+               const PerLeg<LegGeometry>& legs, double foot_radius, const RobotScale& scale = {})
       : config_(joint),
         legs_(legs),
         foot_radius_(foot_radius),
-        wbc_(wbc, limits),
+        wbc_(wbc, limits, scale),
         guard_(joint, legs) {}
 
   /// Joint command after one tick of `dt` (s). `model` must have been updated at in.state.

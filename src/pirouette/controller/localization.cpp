@@ -19,13 +19,15 @@ EstimationConfig at_rate(EstimationConfig config, double rate) {
 
 }  // namespace
 
-Localization::Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs)
+Localization::Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs,
+                           const RobotScale& scale)
     : config_(config),
       legs_(legs),
+      scale_(scale),
       foot_(config.foot.model, legs[Leg::kFR].foot_radius),
       attitude_filter_(config.estimation, 1.0 / config.control.rate),
       odometry_filter_(at_rate(config.estimation, config.control.rate)),
-      creep_(config.creep),
+      creep_(config.creep, scale),
       tilt_bias_(config.estimation.tilt_bias_time),
       flags_(PerLeg<ContactDebounce>::filled(ContactDebounce(std::max(
           1, ticks_in(config.estimation.contact_debounce_time, 1.0 / config.control.rate))))) {}
@@ -93,8 +95,8 @@ Vec3 Localization::joint_feedback_force(const LocalizationInput& in, Leg leg) co
   const Vec3 n_B = R_WB.transpose() * in.last_contacts[leg].n_W;
   const Mat3 J_C = foot_.contact_jacobian(legs_[leg], q, n_B);
   // Near a straight leg a small torque would pass for a large force.
-  constexpr double kMinDeterminant = 1e-3;  // m^3
-  if (std::abs(J_C.determinant()) < kMinDeterminant) return Vec3::Zero();
+  constexpr double kMinDeterminant = 1e-3;  // m^3, of a robot of scale 1
+  if (std::abs(J_C.determinant()) < kMinDeterminant * scale_.volume()) return Vec3::Zero();
   return -R_WB * (J_C.transpose().inverse() * tau);
 }
 

@@ -59,7 +59,8 @@ struct ContactInput {
 class Localization {
  public:
   /// Call reset() and start() before the first estimate.
-  Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs);
+  Localization(const ControllerConfig& config, const PerLeg<LegGeometry>& legs,
+               const RobotScale& scale = {});
 
   /// Discards all memory and takes attitude and yaw of `start`.
   void reset(const BasePose& start);
@@ -82,7 +83,7 @@ class Localization {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, legs, foot, attitude_filter, odometry_filter, creep, tilt_bias, yaw,
+    auto& [config, legs, scale, foot, attitude_filter, odometry_filter, creep, tilt_bias, yaw,
            landed_early, flags, flag_trust] = self;
     visit(attitude_filter, odometry_filter, creep, tilt_bias, yaw, landed_early, flags, flag_trust);
   }
@@ -108,6 +109,7 @@ class Localization {
 
   ControllerConfig config_;
   PerLeg<LegGeometry> legs_;
+  RobotScale scale_;
   RollingFoot foot_;
   AttitudeFilter attitude_filter_;
   LegOdometryFilter odometry_filter_;

@@ -109,21 +109,26 @@ struct SpinController::Impl {
         tick_clock(1.0 / c.control.rate),
         sensor_guard(c.safety, 1.0 / c.control.rate),
         standing_check(c.safety, 1.0 / c.control.rate, model.mass(), stance.p_BG, model.legs()),
-        localization(c, model.legs()),
+        localization(c, model.legs(), model.scale()),
         gait_timing(c.gait),
-        ground_sense(c.terrain, model.legs()[Leg::kFR].foot_radius),
+        ground_sense(c.terrain, model.legs()[Leg::kFR].foot_radius, model.scale()),
         motion_planner(c.path, c.aid, c.control.rate),
         foot_planner(c.foothold, c.gait, c.body.height, localization.foot(), model.legs(), stance),
         com_planner(c.com),
         force_planner(c.mpc, 1.0 / c.control.rate, c.gait.period, com_height, model.mass(),
                       model.inertia(stance.q)),
-        joint_control(c.wbc, c.mpc, c.joint, model.legs(), localization.foot().radius()) {
+        joint_control(c.wbc, c.mpc, c.joint, model.legs(), localization.foot().radius(),
+                      model.scale()) {
     reset(BasePose{});
   }
 
   void reset(const BasePose& pose);
   void start_from(const SensorReading& first);
   const JointCommand& tick(const SensorReading& sensors, const MotionCommand& command) noexcept;
+
+  /// A reading in the joints of LegGeometry, and a command in those of the robot's file.
+  const SensorReading& from_file(const SensorReading& given) noexcept;
+  const JointCommand& to_file(const JointCommand& command) noexcept;
 
   std::vector<std::byte> snapshot() const;
   bool restore(std::span<const std::byte> snapshot);
@@ -132,8 +137,8 @@ struct SpinController::Impl {
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
     auto& [configuration, robot, height, nominal, clock, guard, check, gyro, localization_, timing_,
-           load, lift_off, ground, motion, feet, com, forces, joints, start_, started_, last_,
-           cost] = self;
+           load, lift_off, ground, motion, feet, com, forces, joints, start_, started_, last_, cost,
+           in_, out_] = self;
     visit(clock, guard, check, gyro, localization_, timing_, load, lift_off, ground, motion, com,
           forces, joints, start_, started_, last_);
   }
@@ -167,6 +172,8 @@ struct SpinController::Impl {
   bool started = false;
   TickTrace last;
   TickTiming timing;
+  SensorReading reading_in_model;
+  JointCommand command_in_file;
 };
 
 void SpinController::Impl::reset(const BasePose& pose) {
@@ -224,6 +231,29 @@ bool SpinController::Impl::has_fallen(const RobotState& state, const TerrainPlan
 void SpinController::Impl::stand_down(ControllerStatus why) {
   last.status = why;
   last.command = damped_stand_down(config.joint.kd_stand);
+}
+
+const SensorReading& SpinController::Impl::from_file(const SensorReading& given) noexcept {
+  SensorReading& reading = reading_in_model;
+  reading = given;
+  for (const Leg leg : kLegs) {
+    const JointConvention& convention = model.legs()[leg].convention;
+    reading.joint_position[leg] = convention.from_file(given.joint_position[leg]);
+    reading.joint_velocity[leg] = convention.turned(given.joint_velocity[leg]);
+  }
+  return reading;
+}
+
+const JointCommand& SpinController::Impl::to_file(const JointCommand& command) noexcept {
+  for (const Leg leg : kLegs) {
+    const JointConvention& convention = model.legs()[leg].convention;
+    LegCommand& sent = command_in_file[leg];
+    sent = command[leg];
+    sent.q = convention.to_file(command[leg].q);
+    sent.dq = convention.turned(command[leg].dq);
+    sent.tau = convention.turned(command[leg].tau);
+  }
+  return command_in_file;
 }
 
 const JointCommand& SpinController::Impl::tick(const SensorReading& reading,
@@ -354,8 +384,8 @@ bool SpinController::Impl::restore(std::span<const std::byte> snapshot) {
 }
 
 Result<SpinController> SpinController::create(const ControllerConfig& config,
-                                              const std::string& mjcf) {
-  Result<RobotModel> model = RobotModel::load(mjcf);
+                                              const RobotDescription& robot) {
+  Result<RobotModel> model = RobotModel::load(robot);
   if (!model.ok()) return model.errors();
   return SpinController(std::make_unique<Impl>(config, std::move(model).value()));
 }
@@ -380,7 +410,7 @@ const TickTiming& SpinController::timing() const { return impl_->timing; }
 
 const JointCommand& SpinController::tick(const SensorReading& sensors,
                                          const MotionCommand& command) noexcept {
-  return impl_->tick(sensors, command);
+  return impl_->to_file(impl_->tick(impl_->from_file(sensors), command));
 }
 
 }  // namespace pirouette

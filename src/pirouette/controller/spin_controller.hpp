@@ -11,6 +11,7 @@
 #include "pirouette/base/result.hpp"
 #include "pirouette/controller/controller.hpp"
 #include "pirouette/controller/controller_config.hpp"
+#include "pirouette/model/robot_description.hpp"
 #include "pirouette/path/path.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/motion_command.hpp"
@@ -22,8 +23,10 @@ namespace pirouette {
 /// Controller for accurate turns. docs/architecture.md#one-tick
 class SpinController final : public Controller {
  public:
-  /// Reads the robot model from the file `mjcf`. The errors name the file and what it lacks.
-  static Result<SpinController> create(const ControllerConfig& config, const std::string& mjcf);
+  /// Reads the robot (RobotModel::load). Readings and commands are in the joints of its file. The
+  /// errors name the file and what it lacks.
+  static Result<SpinController> create(const ControllerConfig& config,
+                                       const RobotDescription& robot);
 
   SpinController(SpinController&&) noexcept;             ///< moves
   SpinController& operator=(SpinController&&) noexcept;  ///< moves

@@ -5,6 +5,7 @@
 #include "pirouette/base/math.hpp"
 #include "pirouette/estimation/estimation_config.hpp"
 #include "pirouette/types/creep_estimate.hpp"
+#include "pirouette/types/robot_scale.hpp"
 
 namespace pirouette {
 
@@ -28,7 +29,10 @@ struct CreepInput {
 class SpinCreep {
  public:
   /// Starts from the calibrated values.
-  explicit SpinCreep(const CreepConfig& config) : config_(config) { reset(); }
+  explicit SpinCreep(const CreepConfig& config, const RobotScale& scale = {})
+      : config_(config), scale_(scale) {
+    reset();
+  }
 
   /// Estimate after one tick of `dt` (s).
   CreepEstimate update(const CreepInput& in, double dt) noexcept;
@@ -37,7 +41,7 @@ class SpinCreep {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, mean_moment, mean_force] = self;
+    auto& [config, scale, mean_moment, mean_force] = self;
     visit(mean_moment, mean_force);
   }
 
@@ -46,6 +50,7 @@ class SpinCreep {
   double coefficient(double force_share) const noexcept;
 
   CreepConfig config_;
+  RobotScale scale_;
   double mean_moment_ = 0.0;  ///< N m, against the twist
   double mean_force_ = 0.0;   ///< N
 };

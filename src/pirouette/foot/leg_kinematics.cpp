@@ -1,11 +1,18 @@
 #include "pirouette/foot/leg_kinematics.hpp"
 
+#include "pirouette/types/robot_scale.hpp"
+
 namespace pirouette {
 namespace {
 
+// Of a leg of scale 1.
 constexpr double kReachMargin = 1e-4;          // m, kept from the straight and the folded leg
 constexpr double kSingularDeterminant = 2e-4;  // m^3, below it the velocity inverse is damped
 constexpr double kMaxDamping = 0.05;           // m/rad
+
+RobotScale scale_of(const LegGeometry& leg) {
+  return RobotScale::of(leg.thigh + leg.shank, RobotScale::kMass);
+}
 
 // Leg in its own plane: x forwards and `depth` below the abad axis, with the angles both come from.
 struct LegPlane {
@@ -18,7 +25,7 @@ struct LegPlane {
         s23(std::sin(q[1] + q[2])),
         c23(std::cos(q[1] + q[2])),
         x(-leg.thigh * std::sin(q[1]) - leg.shank * s23),
-        depth(leg.thigh * std::cos(q[1]) + leg.shank * c23) {}
+        depth(leg.hip_drop + leg.thigh * std::cos(q[1]) + leg.shank * c23) {}
 
   Vec3 foot(double abad_offset) const {
     return {x, c1 * abad_offset + s1 * depth, s1 * abad_offset - c1 * depth};
@@ -36,7 +43,7 @@ Mat3 foot_jacobian(const LegGeometry& leg, const Vec3& q) {
   const Vec3 p = plane.foot(leg.abad_offset);
   const double shank_s = leg.shank * plane.s23, shank_c = leg.shank * plane.c23;
   Mat3 J;
-  J << 0.0, -plane.depth, -shank_c,                     //
+  J << 0.0, -(plane.depth - leg.hip_drop), -shank_c,    //
       -p.z(), plane.s1 * plane.x, -plane.s1 * shank_s,  //
       p.y(), -plane.c1 * plane.x, plane.c1 * shank_s;
   return J;
@@ -79,8 +86,10 @@ IkSolution inverse_kinematics(const LegGeometry& leg, const Vec3& p_HF, double k
   out.q[0] = std::atan2(y * depth + z * d, y * d - z * depth);
 
   double x = p_HF.x();
-  const double longest = leg.thigh + leg.shank - kReachMargin;
-  const double shortest = std::abs(leg.thigh - leg.shank) + kReachMargin;
+  depth -= leg.hip_drop;
+  const double margin = kReachMargin * scale_of(leg).length;
+  const double longest = leg.thigh + leg.shank - margin;
+  const double shortest = std::abs(leg.thigh - leg.shank) + margin;
   const double length = std::hypot(x, depth);
   out.far = length > longest;
   out.near = length < shortest;
@@ -106,9 +115,11 @@ IkSolution inverse_kinematics(const LegGeometry& leg, const Vec3& p_HF, double k
 
 Vec3 inverse_velocity_kinematics(const LegGeometry& leg, const Vec3& q, const Vec3& v_HF) {
   const Mat3 J = foot_jacobian(leg, q);
-  const double closeness = std::abs(foot_jacobian_determinant(leg, q)) / kSingularDeterminant;
+  const RobotScale scale = scale_of(leg);
+  const double closeness =
+      std::abs(foot_jacobian_determinant(leg, q)) / (kSingularDeterminant * scale.volume());
   if (closeness >= 1.0) return J.inverse() * v_HF;
-  const double damping2 = square(kMaxDamping) * (1.0 - square(closeness));
+  const double damping2 = square(kMaxDamping * scale.length) * (1.0 - square(closeness));
   return J.transpose() * (J * J.transpose() + damping2 * Mat3::Identity()).inverse() * v_HF;
 }
 

@@ -20,19 +20,23 @@ Vec3 attitude_error_W(const WbcInput& in) {
 
 }  // namespace
 
-Mat3 damped_inverse(const Mat3& J) noexcept {
+Mat3 damped_inverse(const Mat3& J, const RobotScale& scale) noexcept {
+  // Of a robot of scale 1.
   constexpr double kSingular = 2e-4;  // m^3
   constexpr double kDamping = 0.05;   // m
+  const double singular = kSingular * scale.volume();
   const double det = J.determinant();
-  if (std::abs(det) >= kSingular) return J.inverse();
-  const double damping2 = square(kDamping) * (1.0 - square(det / kSingular));
+  if (std::abs(det) >= singular) return J.inverse();
+  const double damping2 = square(kDamping * scale.length) * (1.0 - square(det / singular));
   const Mat3 JJt = J * J.transpose() + damping2 * Mat3::Identity();
   return J.transpose() * JJt.inverse();
 }
 
-WholeBodyControl::WholeBodyControl(const WbcConfig& config, const MpcConfig& limits)
+WholeBodyControl::WholeBodyControl(const WbcConfig& config, const MpcConfig& limits,
+                                   const RobotScale& scale)
     : config_(config),
       limits_(limits),
+      scale_(scale),
       solver_(3, kPyramidRows, static_cast<int>(kLegCount), limits.max_iterations) {}
 
 void WholeBodyControl::map_legs(const WbcInput& in, const RobotModel& model) noexcept {
@@ -53,7 +57,7 @@ void WholeBodyControl::map_legs(const WbcInput& in, const RobotModel& model) noe
     }
     m.J_trunk = J.leftCols<kTrunkDof>();
     m.J_leg = J.middleCols<3>(first_column(leg));
-    m.J_leg_inverse = damped_inverse(m.J_leg);
+    m.J_leg_inverse = damped_inverse(m.J_leg, scale_);
     m.c = m.J_leg_inverse * task;
     m.D = m.J_leg_inverse * m.J_trunk;
   }

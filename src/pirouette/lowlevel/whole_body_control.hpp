@@ -7,6 +7,7 @@
 #include "pirouette/types/body_reference.hpp"
 #include "pirouette/types/contact_forces.hpp"
 #include "pirouette/types/foot_contacts.hpp"
+#include "pirouette/types/robot_scale.hpp"
 #include "pirouette/types/swing_target.hpp"
 
 namespace pirouette {
@@ -42,7 +43,7 @@ struct WbcOutput {
 class WholeBodyControl {
  public:
   /// `limits` holds friction, normal forces and the iteration cap.
-  WholeBodyControl(const WbcConfig& config, const MpcConfig& limits);
+  WholeBodyControl(const WbcConfig& config, const MpcConfig& limits, const RobotScale& scale = {});
 
   /// `model` must have been updated at in.state.
   WbcOutput update(const WbcInput& in, const RobotModel& model) noexcept;
@@ -68,11 +69,12 @@ class WholeBodyControl {
 
   WbcConfig config_;
   MpcConfig limits_;
+  RobotScale scale_;
   QpSolver solver_;
   PerLeg<LegMap> legs_{};
 };
 
 /// Inverse of a leg's 3x3 Jacobian, damped where |det| < 2e-4 m^3 (equations.md section 2).
-Mat3 damped_inverse(const Mat3& J) noexcept;
+Mat3 damped_inverse(const Mat3& J, const RobotScale& scale = {}) noexcept;
 
 }  // namespace pirouette

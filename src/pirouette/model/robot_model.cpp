@@ -1,6 +1,8 @@
 #include "pirouette/model/robot_model.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <sstream>
 #include <string>
@@ -9,6 +11,7 @@
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/model/mujoco.hpp"
 #include "pirouette/model/robot_map.hpp"
+#include "pirouette/model/robot_reader.hpp"
 
 namespace pirouette {
 
@@ -21,22 +24,11 @@ Vec3 vec3(const mjtNum* p) { return Vec3(p[0], p[1], p[2]); }
 
 int shank_body(const RobotMap& map, Leg leg) { return map.legs[leg].body[2]; }
 
-/// Masses and inertias that the file asks MuJoCo to change without a word.
-std::optional<Error> mended_masses(const mjSpec& spec, const std::string& file) {
-  const mjsCompiler& c = spec.compiler;
-  if (c.balanceinertia == 0 && c.boundmass == 0.0 && c.boundinertia == 0.0 &&
-      c.settotalmass <= 0.0) {
-    return std::nullopt;
-  }
-  return Error{file, 0, "compiler",
-               "balanceinertia, boundmass, boundinertia or settotalmass changes masses silently; "
-               "allowed: none of them, with the masses and inertias themselves in the file"};
-}
-
-/// Lengths of one leg from the kinematics at q = 0, trunk at the world's origin.
+/// Lengths of one leg from the kinematics at its zero, trunk at the world's origin.
 LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
                           const std::string& file, std::string_view leg_name, Errors& errors) {
-  constexpr double kStraight = 1e-4;  // m, tolerance on "straight down at q = 0"
+  constexpr double kStraight = 1e-3;  // of the leg, tolerance on "straight down"
+  constexpr double kNoDrop = 1e-4;    // m, a hip axis level with the abad's
   const Vec3 abad = vec3(d.xanchor + 3 * leg.joint[0]);
   const Vec3 hip = vec3(d.xanchor + 3 * leg.joint[1]);
   const Vec3 knee = vec3(d.xanchor + 3 * leg.joint[2]);
@@ -45,32 +37,37 @@ LegGeometry read_geometry(const mjModel& m, const mjData& d, const LegMap& leg,
   LegGeometry g;
   g.p_BH = Vec3(hip.x(), abad.y(), abad.z());  // the abad axis is along x: any point of it will do
   g.abad_offset = foot.y() - abad.y();
+  g.hip_drop = std::abs(abad.z() - hip.z()) < kNoDrop ? 0.0 : abad.z() - hip.z();
   g.thigh = hip.z() - knee.z();
   g.shank = knee.z() - foot.z();
   g.foot_radius = m.geom_size[3 * leg.foot_geom];
   g.knee_sign = leg.knee_sign;
   g.tau_max = leg.tau_max;
+  g.convention = leg.convention;
   for (int j = 0; j < 3; ++j) {
     const int joint = leg.joint[static_cast<size_t>(j)];
     g.dry_friction(j) = m.dof_frictionloss[leg.dof[static_cast<size_t>(j)]];
     g.damping(j) = m.dof_damping[leg.dof[static_cast<size_t>(j)]];
     if (!m.jnt_limited[joint]) continue;
-    g.q_min(j) = m.jnt_range[2 * joint];
-    g.q_max(j) = m.jnt_range[2 * joint + 1];
-    if (g.q_max(j) - g.q_min(j) > 4.0 * kPi) {
+    const double low = m.jnt_range[2 * joint], high = m.jnt_range[2 * joint + 1];
+    if (std::max(std::abs(low), std::abs(high)) > 4.0 * kPi) {
       errors.push_back({file, 0, mj_id2name(&m, mjOBJ_JOINT, joint),
-                        "its range is more than two turns: is it in degrees, where the file says "
+                        "its range is beyond two turns: is it in degrees, where the file says "
                         "angle=\"radian\"?"});
     }
+    if (high - low > 2.0 * kPi) continue;  // no limit at all
+    const double zero = leg.convention.zero(j), sign = leg.convention.sign(j);
+    g.q_min(j) = std::min(sign * (low - zero), sign * (high - zero));
+    g.q_max(j) = std::max(sign * (low - zero), sign * (high - zero));
   }
-  const bool straight = std::abs(hip.z() - abad.z()) < kStraight &&
-                        std::abs(knee.x() - hip.x()) < kStraight &&
-                        std::abs(foot.x() - hip.x()) < kStraight && g.thigh > 0.0 && g.shank > 0.0;
+  const double tolerance = kStraight * (g.thigh + g.shank);
+  const bool straight = std::abs(knee.x() - hip.x()) < tolerance &&
+                        std::abs(foot.x() - hip.x()) < tolerance && g.thigh > 0.0 && g.shank > 0.0;
   if (!straight) {
     errors.push_back(
         {file, 0, std::string(leg_name),
-         "the leg must hang straight down at zero joint angles: hip, knee and foot one below the "
-         "other, the hip axis level with the abad axis"});
+         "the leg must hang straight down at the zeros of its joints: hip, knee and foot one below "
+         "the other"});
   }
   return g;
 }
@@ -102,10 +99,13 @@ std::optional<Error> degrees_for_radians(const mjModel& m, const RobotMap& map,
 struct RobotModel::Impl {
   ModelPtr m;
   DataPtr d;
+  RobotDescription description;
+  std::vector<std::string> notes;
   RobotMap map;
   double mass = 0.0;
   PerLeg<LegGeometry> legs{};
-  std::array<int, kDof> dof{};  ///< MuJoCo's address of each of our velocities
+  std::array<int, kDof> dof{};   ///< MuJoCo's address of each of our velocities
+  VecDof sign = VecDof::Ones();  ///< of our velocities over MuJoCo's
 
   MatDof M = MatDof::Zero();
   VecDof h = VecDof::Zero();
@@ -122,8 +122,9 @@ struct RobotModel::Impl {
     qpos[0] = p_WB.x(), qpos[1] = p_WB.y(), qpos[2] = p_WB.z();
     qpos[3] = quat.w(), qpos[4] = quat.x(), qpos[5] = quat.y(), qpos[6] = quat.z();
     for (const Leg leg : kLegs) {
+      const Vec3 angles = map.legs[leg].convention.to_file(q[leg]);
       for (size_t j = 0; j < kJointsPerLeg; ++j)
-        d->qpos[map.legs[leg].qpos[j]] = q[leg](static_cast<int>(j));
+        d->qpos[map.legs[leg].qpos[j]] = angles(static_cast<int>(j));
     }
     mj_kinematics(m.get(), d.get());
     mj_comPos(m.get(), d.get());
@@ -131,16 +132,17 @@ struct RobotModel::Impl {
 
   Jacobian to_our_order(const RowMajorJacobian& J) const {
     Jacobian out;
-    for (int i = 0; i < kDof; ++i) out.col(i) = J.col(dof[static_cast<size_t>(i)]);
+    for (int i = 0; i < kDof; ++i) out.col(i) = sign(i) * J.col(dof[static_cast<size_t>(i)]);
     return out;
   }
 };
 
-Result<RobotModel> RobotModel::load(const std::string& mjcf) {
+Result<RobotModel> RobotModel::load(const RobotDescription& robot) {
+  const std::string& mjcf = robot.file;
   catch_mujoco_errors();
   const MujocoWarnings warnings;
   try {
-    Result<RobotModel> model = read(mjcf);
+    Result<RobotModel> model = read(robot);
     if (!model) return model;
     // What update() needs of MuJoCo's stack is asked for once here, where an error can be told.
     model.value().evaluate(RobotState{});
@@ -155,18 +157,20 @@ Result<RobotModel> RobotModel::load(const std::string& mjcf) {
   }
 }
 
-Result<RobotModel> RobotModel::read(const std::string& mjcf) {
-  std::array<char, 1024> message{};
-  const SpecPtr spec(
-      mj_parseXML(mjcf.c_str(), nullptr, message.data(), static_cast<int>(message.size())));
-  if (!spec) return Error{mjcf, 0, "", std::string("not a readable MJCF file: ") + message.data()};
+Result<RobotModel> RobotModel::read(const RobotDescription& robot) {
+  Result<ReadRobot> found = read_robot(robot);
+  if (!found) return found.errors();
+  const std::string& mjcf = robot.file;
+  const SpecPtr& spec = found.value().spec;
   auto impl = std::make_unique<Impl>();
   impl->m.reset(mj_compile(spec.get(), nullptr));
   if (!impl->m)
     return Error{mjcf, 0, "", std::string("MuJoCo cannot compile it: ") + mjs_getError(spec.get())};
   mjModel& m = *impl->m;
 
-  Result<RobotMap> map = map_robot(m, mjcf);
+  impl->description = found.value().description;
+  impl->notes = found.value().notes;
+  Result<RobotMap> map = map_robot(m, impl->description);
   if (!map.ok()) return map.errors();
   impl->map = map.value();
   if (m.nv != kDof) {
@@ -184,6 +188,8 @@ Result<RobotModel> RobotModel::read(const std::string& mjcf) {
   for (const Leg leg : kLegs) {
     for (size_t j = 0; j < kJointsPerLeg; ++j)
       impl->dof[6 + 3 * index(leg) + j] = impl->map.legs[leg].dof[j];
+    impl->sign.segment<3>(6 + 3 * static_cast<int>(index(leg))) =
+        impl->map.legs[leg].convention.sign;
   }
 
   impl->set_pose(Vec3::Zero(), Mat3::Identity(), {});
@@ -192,7 +198,6 @@ Result<RobotModel> RobotModel::read(const std::string& mjcf) {
     impl->legs[leg] = read_geometry(m, *impl->d, impl->map.legs[leg], mjcf, name(leg), errors);
   }
   if (const auto wrong = degrees_for_radians(m, impl->map, mjcf)) errors.push_back(*wrong);
-  if (const auto mended = mended_masses(*spec, mjcf)) errors.push_back(*mended);
   if (!errors.empty()) return errors;
   return RobotModel(std::move(impl));
 }
@@ -205,22 +210,14 @@ RobotModel::~RobotModel() = default;
 double RobotModel::mass() const { return impl_->mass; }
 const PerLeg<LegGeometry>& RobotModel::legs() const { return impl_->legs; }
 
-std::vector<std::string> RobotModel::assumptions() const {
-  std::string unlimited;
-  for (const Leg leg : kLegs) {
-    for (std::size_t j = 0; j < kJointsPerLeg; ++j) {
-      if (impl_->legs[leg].tau_max(static_cast<int>(j)) < kNoTorqueLimit) continue;
-      unlimited +=
-          (unlimited.empty() ? "" : ", ") +
-          std::string(mj_id2name(impl_->m.get(), mjOBJ_JOINT, impl_->map.legs[leg].joint[j]));
-    }
-  }
-  if (unlimited.empty()) return {};
-  std::ostringstream text;
-  text << "no torque limit of " << unlimited << ": up to " << kNoTorqueLimit
-       << " N m are commanded; give the joints an actuatorfrcrange, or their motors a forcerange";
-  return {text.str()};
+RobotScale RobotModel::scale() const {
+  double leg_length = 0.0;
+  for (const LegGeometry& leg : impl_->legs) leg_length += (leg.thigh + leg.shank) / kLegCount;
+  return RobotScale::of(leg_length, impl_->mass);
 }
+
+const RobotDescription& RobotModel::description() const { return impl_->description; }
+const std::vector<std::string>& RobotModel::notes() const { return impl_->notes; }
 
 Vec3 RobotModel::com(const PerLeg<Vec3>& q) {
   impl_->set_pose(Vec3::Zero(), Mat3::Identity(), q);
@@ -253,7 +250,7 @@ void RobotModel::evaluate(const RobotState& state) {
   s.nu << state.v_WB_W, state.w_WB_B, state.joint_velocity[Leg::kFR],
       state.joint_velocity[Leg::kFL], state.joint_velocity[Leg::kRR],
       state.joint_velocity[Leg::kRL];
-  for (int i = 0; i < kDof; ++i) d->qvel[s.dof[static_cast<size_t>(i)]] = s.nu(i);
+  for (int i = 0; i < kDof; ++i) d->qvel[s.dof[static_cast<size_t>(i)]] = s.sign(i) * s.nu(i);
   mj_makeM(m, d);
   mj_comVel(m, d);
 
@@ -262,9 +259,10 @@ void RobotModel::evaluate(const RobotState& state) {
   std::array<double, kDof> bias;
   mj_rne(m, d, 0, bias.data());
   for (int row = 0; row < kDof; ++row) {
-    s.h(row) = bias[static_cast<size_t>(s.dof[static_cast<size_t>(row)])];
+    s.h(row) = s.sign(row) * bias[static_cast<size_t>(s.dof[static_cast<size_t>(row)])];
     for (int column = 0; column < kDof; ++column) {
-      s.M(row, column) = full(s.dof[static_cast<size_t>(row)], s.dof[static_cast<size_t>(column)]);
+      s.M(row, column) = s.sign(row) * s.sign(column) *
+                         full(s.dof[static_cast<size_t>(row)], s.dof[static_cast<size_t>(column)]);
     }
   }
   // The trunk's translational rows are Newton's law of the whole robot: m J_com dnu + m (Jdot nu +

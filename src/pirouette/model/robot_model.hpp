@@ -1,4 +1,4 @@
-// The controller's rigid-body model of a quadruped from an MJCF file, without a world.
+// The controller's rigid-body model of a quadruped from an MJCF or URDF file, without a world.
 #pragma once
 
 #include <memory>
@@ -8,7 +8,9 @@
 #include "pirouette/base/legs.hpp"
 #include "pirouette/base/math.hpp"
 #include "pirouette/base/result.hpp"
+#include "pirouette/model/robot_description.hpp"
 #include "pirouette/types/leg_geometry.hpp"
+#include "pirouette/types/robot_scale.hpp"
 #include "pirouette/types/robot_state.hpp"
 
 namespace pirouette {
@@ -26,8 +28,9 @@ using Jacobian = Eigen::Matrix<double, 3, kDof>;
 /// abad hip knee].
 class RobotModel {
  public:
-  /// Reads `mjcf`; the errors name the file and what is missing (legs, joints, foot spheres).
-  static Result<RobotModel> load(const std::string& mjcf);
+  /// Reads a robot (model/robot_reader.hpp); a path stands for the robot of that file. The errors
+  /// name the file and what keeps the robot from walking.
+  static Result<RobotModel> load(const RobotDescription& robot);
 
   RobotModel(RobotModel&&) noexcept;             ///< moves
   RobotModel& operator=(RobotModel&&) noexcept;  ///< moves
@@ -35,8 +38,11 @@ class RobotModel {
 
   double mass() const;                      ///< kg
   const PerLeg<LegGeometry>& legs() const;  ///< lengths and limits of each leg
-  /// What the file leaves out and what stands in for it, a sentence each.
-  std::vector<std::string> assumptions() const;
+  RobotScale scale() const;                 ///< of mass and mean length of the legs
+  /// The robot as it was found: complete, so that it can be read again.
+  const RobotDescription& description() const;
+  /// What was mended, left out or assumed, a sentence each.
+  const std::vector<std::string>& notes() const;
   /// Inertia (kg m^2) of the whole robot about its CoM, trunk axes, at joint angles `q` (rad).
   Mat3 inertia(const PerLeg<Vec3>& q);
   /// CoM (m) in trunk axes at joint angles `q` (rad).
@@ -57,7 +63,7 @@ class RobotModel {
   const Vec3& shank_bias(Leg leg) const;  ///< rad/s^2: Jdot nu of the shank's angular velocity
 
  private:
-  static Result<RobotModel> read(const std::string& mjcf);
+  static Result<RobotModel> read(const RobotDescription& robot);
   void evaluate(const RobotState& state);
 
   struct Impl;

@@ -308,7 +308,7 @@ Result<Plant> Plant::create(const WorldConfig& config, const PlantSetup& setup) 
   const std::size_t steps = whole_periods(setup.period, config.timestep).value();
   const std::size_t delay = whole_periods(config.command_latency, config.timestep).value();
   const Terrain terrain(parse_terrain(config.terrain).value(), setup.seed);
-  Result<Scene> scene = build_scene(config, terrain, setup.mjcf);
+  Result<Scene> scene = build_scene(config, terrain, setup.robot);
   if (!scene) return scene.errors();
 
   auto impl =

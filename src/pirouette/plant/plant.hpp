@@ -6,6 +6,7 @@
 #include <string>
 
 #include "pirouette/base/result.hpp"
+#include "pirouette/model/robot_description.hpp"
 #include "pirouette/plant/world_config.hpp"
 #include "pirouette/types/joint_command.hpp"
 #include "pirouette/types/plant_truth.hpp"
@@ -18,7 +19,7 @@ std::string physics_version();
 
 /// What a Plant needs besides its WorldConfig.
 struct PlantSetup {
-  std::string mjcf;           ///< path of the robot's file
+  RobotDescription robot;     ///< what stands in the world
   std::uint64_t seed = 1;     ///< of noise, biases and terrain
   double period = 0.002;      ///< s, from one joint command to the next
   double com_height = 0.0;    ///< m, of the standing robot above the ground

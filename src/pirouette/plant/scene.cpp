@@ -2,12 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+
+#include "pirouette/model/robot_reader.hpp"
 
 namespace pirouette {
 namespace {
 
 constexpr int kFootContactDimensions = 6;  ///< normal, two sliding, torsion, two rolling
 constexpr double kContactDampingRatio = 1.0;
+/// MuJoCo's default impedance: the same contact whatever the robot's file has.
+constexpr std::array<double, mjNIMP> kContactImpedance = {0.9, 0.95, 0.001, 0.5, 2.0};
+/// Inverse weight of a foot's body times the robot's mass, of the Mini Cheetah.
+constexpr double kFootCompliance = 41.93789190;
 
 void remove_world_geoms(mjSpec& spec) {
   const mjsBody* world = mjs_findBody(&spec, "world");
@@ -47,6 +54,19 @@ void falsify_trunk(const WorldConfig& config, int trunk, mjModel& model) {
   mj_setConst(&model, data.get());
 }
 
+/// Makes the stiffness of the feet's contacts the robot's weight's: MuJoCo takes it from the
+/// inverse weight of the body that carries the foot, which says more about the file than about the
+/// robot. To six decimals, so that the Mini Cheetah's stays what it is.
+void stiffen_feet(const RobotMap& map, mjModel& model) {
+  const double mass = model.body_subtreemass[map.trunk_body];
+  double compliance = 0.0;
+  for (const LegMap& leg : map.legs)
+    compliance += mass * model.body_invweight0[2 * model.geom_bodyid[leg.foot_geom]] / kLegCount;
+  const double factor = std::round(1e6 * kFootCompliance / compliance) / 1e6;
+  for (const LegMap& leg : map.legs)
+    model.body_invweight0[2 * model.geom_bodyid[leg.foot_geom]] *= factor;
+}
+
 mjOption physics_options(const WorldConfig& config) {
   mjOption option;
   mj_defaultOption(&option);
@@ -63,12 +83,11 @@ mjOption physics_options(const WorldConfig& config) {
 }  // namespace
 
 Result<Scene> build_scene(const WorldConfig& config, const Terrain& terrain,
-                          const std::string& mjcf) {
+                          const RobotDescription& robot) {
   catch_mujoco_errors();
-  std::array<char, 1024> message{};
-  const SpecPtr spec(
-      mj_parseXML(mjcf.c_str(), nullptr, message.data(), static_cast<int>(message.size())));
-  if (!spec) return Error{mjcf, 0, "", message.data()};
+  Result<ReadRobot> read = read_robot(robot);
+  if (!read) return read.errors();
+  const SpecPtr& spec = read.value().spec;
 
   const Vec3 friction(config.friction, config.torsional_friction, config.rolling_friction);
   remove_world_geoms(*spec);
@@ -78,21 +97,25 @@ Result<Scene> build_scene(const WorldConfig& config, const Terrain& terrain,
 
   Scene scene;
   scene.model.reset(mj_compile(spec.get(), nullptr));
-  if (!scene.model) return Error{mjcf, 0, "", mjs_getError(spec.get())};
+  if (!scene.model) return Error{robot.file, 0, "", mjs_getError(spec.get())};
   mjModel& model = *scene.model;
 
-  Result<RobotMap> map = map_robot(model, mjcf);
+  Result<RobotMap> map = map_robot(model, read.value().description);
   if (!map) return map.errors();
   scene.map = map.value();
   if (config.trunk_mass_scale != 1.0 || config.trunk_com_offset != WorldConfig{}.trunk_com_offset)
     falsify_trunk(config, scene.map.trunk_body, model);
 
+  stiffen_feet(scene.map, model);
   const int foot_priority =
       1 + *std::max_element(model.geom_priority, model.geom_priority + model.ngeom);
   for (const LegMap& leg : scene.map.legs) {
     Eigen::Map<Vec3>(model.geom_friction + 3 * leg.foot_geom) = friction;
     model.geom_condim[leg.foot_geom] = kFootContactDimensions;
     model.geom_priority[leg.foot_geom] = foot_priority;
+    model.geom_margin[leg.foot_geom] = model.geom_gap[leg.foot_geom] = 0.0;
+    std::copy(kContactImpedance.begin(), kContactImpedance.end(),
+              model.geom_solimp + mjNIMP * leg.foot_geom);
     Eigen::Map<Vec2>(model.geom_solref + mjNREF * leg.foot_geom) =
         Vec2(terrain.contact_time_constant(config.contact_time_constant), kContactDampingRatio);
     for (const int dof : leg.dof) {

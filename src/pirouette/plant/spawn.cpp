@@ -33,6 +33,13 @@ void write_trunk(const RobotMap& map, const Vec3& p_WB, const Mat3& R_WB, mjData
   Eigen::Map<Vec4>(data.qpos + map.trunk_qpos + 3) << q.w(), q.x(), q.y(), q.z();
 }
 
+/// Sets the joints of one leg to the angles `q` (rad) of LegGeometry.
+void write_leg(const LegMap& leg, const Vec3& q, mjData& data) {
+  const Vec3 angles = leg.convention.to_file(q);
+  for (std::size_t i = 0; i < kJointsPerLeg; ++i)
+    data.qpos[leg.qpos[i]] = angles[static_cast<Eigen::Index>(i)];
+}
+
 /// Moves one leg towards `p_WF_goal` by one damped Newton step within its joint limits.
 void step_leg(const mjModel& model, const LegMap& leg, const Vec3& p_WF_goal, mjData& data) {
   Eigen::Matrix<double, 3, Eigen::Dynamic, Eigen::RowMajor> J_all(3, model.nv);
@@ -65,7 +72,7 @@ Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& ter
   mju_copy(data.qpos, model.qpos0, model.nq);
   PerLeg<Vec3> p_BH_W;
   for (const LegMap& leg : map.legs) {
-    for (const int address : leg.qpos) data.qpos[address] = 0.0;
+    write_leg(leg, Vec3::Zero(), data);
   }
   Vec3 p_WB(xy.x(), xy.y(), terrain.height(xy) + com_height);
   write_trunk(map, p_WB, R_WB, data);
@@ -73,8 +80,7 @@ Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& ter
   for (const Leg leg : kLegs) {
     const LegMap& at_leg = map.legs[leg];
     p_BH_W[leg] = at(data.xanchor, at_leg.joint[1]) - p_WB;
-    data.qpos[at_leg.qpos[1]] = -at_leg.knee_sign * kFirstBend;
-    data.qpos[at_leg.qpos[2]] = 2.0 * at_leg.knee_sign * kFirstBend;
+    write_leg(at_leg, at_leg.knee_sign * Vec3(0.0, -kFirstBend, 2.0 * kFirstBend), data);
   }
 
   PerLeg<Vec3> goal;

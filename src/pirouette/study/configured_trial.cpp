@@ -77,9 +77,9 @@ RunContext describe_run(const Config& config, const MotionCommand& motion) {
 
 }  // namespace
 
-PlantSetup plant_setup(const Config& config, const std::string& mjcf) {
+PlantSetup plant_setup(const Config& config, const RobotDescription& robot) {
   PlantSetup setup;
-  setup.mjcf = mjcf;
+  setup.robot = robot;
   setup.seed = static_cast<std::uint64_t>(config.run.seed);
   setup.period = 1.0 / config.control.rate;
   setup.com_height = config.body.height;
@@ -90,13 +90,13 @@ PlantSetup plant_setup(const Config& config, const std::string& mjcf) {
 }
 
 Result<TrialSetup> set_up(const Config& config) {
-  const Result<std::string> mjcf = resolve_robot(config);
-  if (!mjcf) return mjcf.errors();
+  const Result<RobotDescription> robot = resolve_robot(config);
+  if (!robot) return robot.errors();
   TrialSetup setup;
   if (Errors errors = load_motion(config.run, setup); !errors.empty()) return errors;
   setup.controller = config;
   setup.world = config.plant;
-  setup.plant = plant_setup(config, mjcf.value());
+  setup.plant = plant_setup(config, robot.value());
   setup.trial = config.run;
   setup.context = describe_run(config, setup.motion);
   return setup;
@@ -111,12 +111,12 @@ Errors check_settings(const Config& config) {
 }
 
 std::vector<std::string> robot_assumptions(const Config& config) {
-  const Result<std::string> mjcf = resolve_robot(config);
-  if (!mjcf) return {};
-  const Result<RobotModel> model = RobotModel::load(mjcf.value());
+  const Result<RobotDescription> robot = resolve_robot(config);
+  if (!robot) return {};
+  const Result<RobotModel> model = RobotModel::load(robot.value());
   if (!model) return {};
-  std::vector<std::string> texts = model.value().assumptions();
-  for (std::string& text : texts) text = mjcf.value() + ": " + text;
+  std::vector<std::string> texts = model.value().notes();
+  for (std::string& text : texts) text = robot.value().file + ": " + text;
   return texts;
 }
 

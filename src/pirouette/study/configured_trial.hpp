@@ -9,8 +9,8 @@
 
 namespace pirouette {
 
-/// The PlantSetup of `config`; `mjcf` is the path of the robot's file.
-PlantSetup plant_setup(const Config& config, const std::string& mjcf);
+/// The PlantSetup of `config` with `robot`.
+PlantSetup plant_setup(const Config& config, const RobotDescription& robot);
 
 /// The trial of `config`, with its robot and path files found and the path read.
 Result<TrialSetup> set_up(const Config& config);

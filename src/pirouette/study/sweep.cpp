@@ -285,8 +285,9 @@ std::string trial_key(const Config& config) {
       fingerprint.add(parameter.value);
     }
   }
-  if (const Result<std::string> robot = resolve_robot(config)) {
-    fingerprint.add(read_text(robot.value()));
+  if (const Result<RobotDescription> robot = resolve_robot(config)) {
+    fingerprint.add(read_text(robot.value().file));
+    if (!robot.value().source.empty()) fingerprint.add(read_text(robot.value().source));
   }
   if (!config.run.path.empty()) {
     const Result<fs::path> path = resolve_path(config.run);

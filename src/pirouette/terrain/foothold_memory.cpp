@@ -10,13 +10,15 @@ namespace pirouette {
 namespace {
 
 constexpr double kMinFootholds = 24.0;  // for a plane: three strides of four legs and as many again
-constexpr double kNear = 0.5;           // m, around the robot
 constexpr double kMaxFromGradient = 0.5;  // rad, that the climb may differ from the gradient
 constexpr double kMinGradient = 0.03;     // below it there is no direction to climb
 constexpr std::size_t kFewestAlone = 60;  // fifteen strides of four legs
 constexpr int kMinFootholdsPerTread = 3;  // fewer are feet on edges
-constexpr double kMaxResidual = 0.004;    // m, rms about the treads; more is no flight of stairs
-constexpr double kReach = 0.05;  // m, beyond the outermost footholds that a tread is taken to go on
+
+// m, of a robot of scale 1.
+constexpr double kNear = 0.5;           // around the robot
+constexpr double kMaxResidual = 0.004;  // rms about the treads; more is no flight of stairs
+constexpr double kReach = 0.05;  // beyond the outermost footholds that a tread is taken to go on
 
 Vec2 unit_vector(double direction) { return Vec2(std::cos(direction), std::sin(direction)); }
 
@@ -45,7 +47,7 @@ void FootholdMemory::fit_around(const Vec2& p_WG) noexcept {
   std::array<double, kCapacity> weights;
   const std::size_t n = count();
   for (std::size_t i = 0; i < n; ++i) {
-    weights[i] = (footholds_[i].head<2>() - p_WG).norm() < kNear ? 1.0 : 0.0;
+    weights[i] = (footholds_[i].head<2>() - p_WG).norm() < kNear * scale_.length ? 1.0 : 0.0;
   }
   const TerrainPlane fit = fit_plane({footholds_.data(), n}, {weights.data(), n}, TerrainPlane{},
                                      config_.min_scatter, 0.0);
@@ -123,7 +125,7 @@ void FootholdMemory::find_treads(std::size_t n) noexcept {
   constexpr double kMinShareKept = 0.7;
   valid_ = tread_count_ >= 2 &&
            static_cast<double>(kept) > kMinShareKept * static_cast<double>(n) &&
-           std::sqrt(squares / static_cast<double>(kept)) < kMaxResidual;
+           std::sqrt(squares / static_cast<double>(kept)) < kMaxResidual * scale_.length;
 }
 
 double FootholdMemory::lower_edge(std::size_t tread) const noexcept {
@@ -140,7 +142,8 @@ std::optional<RememberedGround> FootholdMemory::at(const Vec2& p_W) const noexce
   if (!valid_) return std::nullopt;
   const Vec2 uphill = unit_vector(*climb_);
   const double along = uphill.dot(p_W);
-  if (along < treads_[0].from - kReach || along > treads_[tread_count_ - 1].to + kReach) {
+  const double reach = kReach * scale_.length;
+  if (along < treads_[0].from - reach || along > treads_[tread_count_ - 1].to + reach) {
     return std::nullopt;
   }
   std::size_t tread = 0;

@@ -6,6 +6,7 @@
 
 #include "pirouette/base/math.hpp"
 #include "pirouette/terrain/terrain_config.hpp"
+#include "pirouette/types/robot_scale.hpp"
 #include "pirouette/types/terrain_plane.hpp"
 
 namespace pirouette {
@@ -27,7 +28,9 @@ class FootholdMemory {
  public:
   static constexpr std::size_t kCapacity = 160;  ///< footholds kept
 
-  explicit FootholdMemory(const TerrainConfig& config) : config_(config) {}  ///< no footholds
+  /// No footholds.
+  explicit FootholdMemory(const TerrainConfig& config, const RobotScale& scale = {})
+      : config_(config), scale_(scale) {}
 
   /// Adds one foothold, once per stance: contact point `p_WC` (m) of a foot on level ground; `p_WG`
   /// (m) is the CoM.
@@ -46,7 +49,8 @@ class FootholdMemory {
   /// See base/memory.hpp. Of the footholds only the count() valid ones.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, footholds, added, plane, climb, sorted, treads, tread_count, valid] = self;
+    auto& [config, scale, footholds, added, plane, climb, sorted, treads, tread_count, valid] =
+        self;
     visit(added, plane, climb, treads, tread_count, valid);
     for (std::size_t i = 0; i < self.count(); ++i) visit(footholds[i]);
   }
@@ -77,6 +81,7 @@ class FootholdMemory {
   double upper_edge(std::size_t tread) const noexcept;
 
   TerrainConfig config_;
+  RobotScale scale_;
   std::array<Vec3, kCapacity> footholds_;
   std::size_t added_ = 0;
   std::optional<TerrainPlane> plane_;

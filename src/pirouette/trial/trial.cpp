@@ -16,8 +16,7 @@ namespace pirouette {
 namespace {
 
 constexpr double kFallTilt = 1.0;           // rad
-constexpr double kFallHeight = 0.1;         // m
-constexpr double kFallShare = 0.4;          // of the standing height, for small robots
+constexpr double kFallHeight = 0.37;        // of the standing height
 constexpr double kStandDownTime = 1.0;      // s
 constexpr double kTimePerStillTurn = 10.0;  // s
 constexpr double kProgressPeriod = 0.1;     // s, simulated
@@ -139,7 +138,7 @@ bool has_fallen(const PlantTruth& truth, double standing_height) {
   const double upright = up.dot(truth.ground_normal_W);
   const double height = truth.p_WG.z() - truth.ground_height;
   // Written so that a value that is not a number counts as a fall.
-  const double least_height = std::min(kFallHeight, kFallShare * standing_height);
+  const double least_height = kFallHeight * standing_height;
   return !(upright > std::cos(kFallTilt) && height > least_height && truth.p_WG.allFinite() &&
            truth.v_WG_W.allFinite());
 }
@@ -157,7 +156,7 @@ Result<Robot> build(const TrialSetup& setup) {
     text << "makes a trial of " << recorded << " s; allowed: up to " << kMaxDuration << " s";
     return Error{"", 0, setup.path ? "run.laps" : "run.turns", text.str()};
   }
-  Result<SpinController> controller = SpinController::create(setup.controller, setup.plant.mjcf);
+  Result<SpinController> controller = SpinController::create(setup.controller, setup.plant.robot);
   if (!controller) {
     // Both read the robot's file: what is wrong with it, and what follows from it, is said once.
     Errors errors = controller.errors();
@@ -389,7 +388,7 @@ Errors check_trial(const TrialSetup& setup) {
     const Result<Robot> robot = build(setup);
     return robot ? Errors{} : robot.errors();
   } catch (const std::runtime_error& error) {  // of MuJoCo
-    return {Error{setup.plant.mjcf, 0, "", error.what()}};
+    return {Error{setup.plant.robot.file, 0, "", error.what()}};
   }
 }
 
@@ -399,7 +398,7 @@ Result<TrialResult> run_trial(const TrialSetup& setup, const TrialOptions& optio
     if (!robot) return robot.errors();
     return Trial(setup, options, std::move(robot).value()).run();
   } catch (const std::runtime_error& error) {  // of MuJoCo, while it simulates
-    return Error{setup.plant.mjcf, 0, "", error.what()};
+    return Error{setup.plant.robot.file, 0, "", error.what()};
   }
 }
 
