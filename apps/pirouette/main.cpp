@@ -20,6 +20,7 @@
 #include "pirouette/study/repeat_command.hpp"
 #include "replay_command.hpp"
 #include "reproduce_command.hpp"
+#include "robot_command.hpp"
 #include "run_command.hpp"
 #include "sweep_command.hpp"
 
@@ -114,6 +115,7 @@ int run(int argc, char** argv) {
   const ReproduceCommand reproduce(app);
   const ReplayCommand replay(app);
   const ConfigCommand config(app);
+  const RobotCommand robot(app);
 
   if (argc > 1 && argv[1][0] != '-' && !has_verb(app, argv[1])) {
     return run_external(app, argv + 1);
@@ -133,6 +135,7 @@ int run(int argc, char** argv) {
   if (reproduce.chosen()) return reproduce.run();
   if (replay.chosen()) return replay.run();
   if (config.chosen()) return config.run();
+  if (robot.chosen()) return robot.run();
   std::cout << app.help();
   return kDone;
 }

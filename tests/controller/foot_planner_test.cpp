@@ -15,7 +15,7 @@ constexpr double kHeight = 0.29;  // m
 class Spinning {
  public:
   explicit Spinning(const GaitConfig& gait_config = {}, const FootholdConfig& config = {})
-      : memory(TerrainConfig{}, 0.0225) {
+      : memory(TerrainConfig{}, PerLeg<double>::filled(0.0225)) {
     PerLeg<LegGeometry> legs;
     NominalStance stance;
     for (const Leg leg : kLegs) {
@@ -27,7 +27,7 @@ class Spinning {
       state.p_WF[leg] = Vec3(0.1, 0.2, 0.3);
       p_WF_liftoff[leg] = Vec3(0.2, -0.1, 0.0225);
     }
-    planner.emplace(config, gait_config, kHeight, RollingFoot(FootModel::kRolling, 0.0225), legs,
+    planner.emplace(config, gait_config, kHeight, rolling_feet(FootModel::kRolling, legs), legs,
                     stance);
     gait.walking = true;
     gait.stance_duration = 0.3;

@@ -22,7 +22,7 @@ double stairs(const Vec2& p) { return 0.05 * std::floor(p.x() / 0.2 + 0.5); }
 class Spinning {
  public:
   Spinning(const TerrainConfig& config, Ground ground)
-      : sense(config, kRadius), ground_(std::move(ground)) {
+      : sense(config, PerLeg<double>::filled(kRadius)), ground_(std::move(ground)) {
     place();
     std::array<Vec3, kLegCount> contacts;
     for (const Leg leg : kLegs) contacts[index(leg)] = feet[leg].p_WC;
@@ -150,7 +150,7 @@ TEST(GroundSense, MovesAPlannedFootholdOffTheEdgeToTheHeightOfItsTread) {
   robot.steps(40);
   Foothold planned;
   planned.p_WC = Vec3(0.115, 0.19, 0.02);
-  const Foothold out = robot.sense.adapted(planned, kRadius);
+  const Foothold out = robot.sense.adapted(planned, Leg::kFR, kRadius);
   EXPECT_GT(out.p_WC.x(), 0.12);
   EXPECT_NEAR(out.p_WC.y(), 0.19, 5e-3);
   EXPECT_NEAR(out.p_WC.z(), 0.05, 1e-12);
@@ -158,7 +158,7 @@ TEST(GroundSense, MovesAPlannedFootholdOffTheEdgeToTheHeightOfItsTread) {
   EXPECT_EQ(out.n_W, Vec3::UnitZ());
 
   // A point foot's contact is its centre, a radius above the tread.
-  const Foothold point = robot.sense.adapted(planned, 0.0);
+  const Foothold point = robot.sense.adapted(planned, Leg::kFR, 0.0);
   EXPECT_NEAR(point.p_WC.z(), 0.05 + kRadius, 1e-12);
   EXPECT_EQ(point.p_WF, point.p_WC);
 }
@@ -168,7 +168,7 @@ TEST(GroundSense, LeavesAFootholdWhereTheMemoryKnowsNothing) {
   robot.steps(3);
   Foothold planned;
   planned.p_WC = Vec3(0.115, 0.19, 0.02);
-  const Foothold out = robot.sense.adapted(planned, kRadius);
+  const Foothold out = robot.sense.adapted(planned, Leg::kFR, kRadius);
   EXPECT_EQ(out.p_WC, planned.p_WC);
   EXPECT_LT(distance(out.p_WF, out.p_WC + kRadius * Vec3::UnitZ()), 1e-15);
 }

@@ -39,7 +39,8 @@ JointCommand command(double compensation) {
   reference.p_WG = state.p_WG;
   JointConfig config;
   config.friction_compensation = compensation;
-  JointControl control(WbcConfig{}, MpcConfig{}, config, model.legs(), 0.0225);
+  JointControl control(WbcConfig{}, MpcConfig{}, config, model.legs(),
+                       PerLeg<double>::filled(0.0225));
   control.start(state.joint_position);
   JointCommand last;
   for (int i = 0; i < 200; ++i) {

@@ -175,7 +175,7 @@ TEST(Localization, FeetRollOnThePlaneOfASlopeAndOnTheLevelOfATread) {
     robot.ground.stepped = stepped;
     robot.find_contacts();
     const FootContact& contact = robot.contacts[Leg::kRR];
-    const double r = robot.localization.foot().radius();
+    const double r = robot.localization.rolling_feet()[Leg::kFR].radius();
     EXPECT_LT(distance(contact.p_WC, robot.out.state.p_WF[Leg::kRR] - r * contact.n_W), 1e-15);
     return contact.n_W;
   };

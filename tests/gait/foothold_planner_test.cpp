@@ -154,7 +154,7 @@ TEST(FootholdPlanner, RollingShiftIsTakenOffInMidStanceAxes) {
 TEST(FootholdPlanner, FootholdsLieOnThePlaneAndCentresAboveItAlongTheNormal) {
   FootholdInput in = spin_input(0.7);
   in.plane = {.a0 = 0.05, .a1 = 0.2, .a2 = -0.1};
-  in.centre_offset = 0.0225;
+  in.centre_offset = PerLeg<double>::filled(0.0225);
   for (const Foothold& foothold : FootholdPlanner({}).update(in)) {
     EXPECT_NEAR(foothold.p_WC.z(), in.plane.height(foothold.p_WC.head<2>()), 1e-15);
     EXPECT_LT(distance(foothold.p_WF, foothold.p_WC + 0.0225 * in.plane.normal()), 1e-15);

@@ -61,7 +61,7 @@ class WholeBody : public testing::Test {
     for (Vec3& dq : in.state.joint_velocity) dq *= vigour;
     in.state.R_WB = exp_so3(random_.vec3(0.3));
     in.state.rpy = rpy_from_rotation(in.state.R_WB);
-    in.contact_radius = kRadius;
+    in.contact_radius = PerLeg<double>::filled(kRadius);
     in.n_W = (Vec3::UnitZ() + random_.vec3(0.2)).normalized();
     complete(in, stance);
     in.reference.p_WG = in.state.p_WG + vigour * random_.vec3(0.02);
@@ -83,7 +83,7 @@ class WholeBody : public testing::Test {
   WbcInput standing() {
     WbcInput in;
     in.state.joint_position = PerLeg<Vec3>::filled(Vec3(0.0, 0.8596, -1.8108));
-    in.contact_radius = kRadius;
+    in.contact_radius = PerLeg<double>::filled(kRadius);
     complete(in, kAllFeet);
     in.reference.p_WG = in.state.p_WG;
     for (const Leg leg : kLegs) in.mpc.f_W[leg].z() = 0.25 * model_.mass() * kGravity;
@@ -103,19 +103,19 @@ class WholeBody : public testing::Test {
       s.v_WF_W[leg] = model_.foot_jacobian(leg) * velocity_of(s);
       in.contacts[leg].in_contact = in.contacts[leg].measured = stance[leg];
       in.contacts[leg].n_W = in.n_W;
-      in.contacts[leg].p_WC = s.p_WF[leg] - in.contact_radius * in.n_W;
+      in.contacts[leg].p_WC = s.p_WF[leg] - in.contact_radius[leg] * in.n_W;
     }
   }
 
   Jacobian contact_jacobian(const WbcInput& in, Leg leg) const {
     return model_.foot_jacobian(leg) +
-           in.contact_radius * skew(in.contacts[leg].n_W) * model_.shank_jacobian(leg);
+           in.contact_radius[leg] * skew(in.contacts[leg].n_W) * model_.shank_jacobian(leg);
   }
 
   /// Part of the contact's acceleration that velocities make (equations.md 4.7).
   Vec3 contact_bias(const WbcInput& in, Leg leg) const {
     return model_.foot_bias(leg) +
-           in.contact_radius * skew(in.contacts[leg].n_W) * model_.shank_bias(leg);
+           in.contact_radius[leg] * skew(in.contacts[leg].n_W) * model_.shank_bias(leg);
   }
 
   Vec3 swing_acceleration(const WbcInput& in, Leg leg) const {

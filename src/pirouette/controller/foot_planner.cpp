@@ -6,12 +6,12 @@
 namespace pirouette {
 
 FootPlanner::FootPlanner(const FootholdConfig& foothold, const GaitConfig& gait, double com_height,
-                         const RollingFoot& foot, const PerLeg<LegGeometry>& legs,
+                         const PerLeg<RollingFoot>& rolling_feet, const PerLeg<LegGeometry>& legs,
                          const NominalStance& stance)
     : config_(foothold),
       gait_(gait),
       capture_time_(std::sqrt(com_height / kGravity)),
-      foot_(foot),
+      rolling_feet_(rolling_feet),
       legs_(legs),
       stance_(stance),
       planner_(foothold) {}
@@ -22,14 +22,14 @@ FootholdPlan FootPlanner::footholds(const FootholdsInput& in,
   FootholdInput planner_in;
   planner_in.gait = in.gait;
   planner_in.nominal_H = stance_.foothold_H;
-  planner_in.centre_offset = foot_.centre_offset();
+  for (const Leg leg : kLegs) planner_in.centre_offset[leg] = rolling_feet_[leg].centre_offset();
   planner_in.p_WG = in.state.p_WG.head<2>();
   planner_in.v_WG_H = rot2(rpy.yaw).transpose() * in.state.v_WG_W.head<2>();
   planner_in.yaw = rpy.yaw;
   if (in.recovering) planner_in.capture_time = capture_time_;
   planner_in.twist = in.twist;
   planner_in.plane = in.plane;
-  if (config_.rolling_compensation && foot_.radius() > 0.0) {
+  if (config_.rolling_compensation) {
     StanceMotion motion;
     motion.p_BG = stance_.p_BG;
     motion.R_HB = rotation_from_rpy({rpy.roll, rpy.pitch, 0.0});
@@ -37,13 +37,16 @@ FootholdPlan FootPlanner::footholds(const FootholdsInput& in,
     motion.twist = in.twist;
     motion.duration = in.gait.stance_duration;
     for (const Leg leg : kLegs) {
+      if (rolling_feet_[leg].radius() == 0.0) continue;
       motion.p_BF = legs_[leg].p_BH + foot_position_H(legs_[leg], stance_.q[leg]);
-      planner_in.rolling_shift_H[leg] = 0.5 * foot_.stance_travel(legs_[leg], motion).head<2>();
+      planner_in.rolling_shift_H[leg] =
+          0.5 * rolling_feet_[leg].stance_travel(legs_[leg], motion).head<2>();
     }
   }
   FootholdPlan out = planner_.update(planner_in);
   if (in.ground.stepped) {
-    for (Foothold& foothold : out) foothold = memory.adapted(foothold, foot_.centre_offset());
+    for (const Leg leg : kLegs)
+      out[leg] = memory.adapted(out[leg], leg, rolling_feet_[leg].centre_offset());
   }
   return out;
 }

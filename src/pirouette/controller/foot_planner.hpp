@@ -49,7 +49,7 @@ class FootPlanner {
  public:
   /// `com_height` (m) above the ground.
   FootPlanner(const FootholdConfig& foothold, const GaitConfig& gait, double com_height,
-              const RollingFoot& foot, const PerLeg<LegGeometry>& legs,
+              const PerLeg<RollingFoot>& rolling_feet, const PerLeg<LegGeometry>& legs,
               const NominalStance& stance);
 
   /// Next foothold of each leg. On stepped ground `memory` moves them off known edges.
@@ -65,7 +65,7 @@ class FootPlanner {
   FootholdConfig config_;
   GaitConfig gait_;
   double capture_time_;  ///< s
-  RollingFoot foot_;
+  PerLeg<RollingFoot> rolling_feet_;
   PerLeg<LegGeometry> legs_;
   NominalStance stance_;
   FootholdPlanner planner_;

@@ -2,7 +2,8 @@
 
 namespace pirouette {
 
-GroundSense::GroundSense(const TerrainConfig& config, double foot_radius, const RobotScale& scale)
+GroundSense::GroundSense(const TerrainConfig& config, const PerLeg<double>& foot_radius,
+                         const RobotScale& scale)
     : config_(config),
       foot_radius_(foot_radius),
       plane_estimator_(config),
@@ -43,16 +44,18 @@ void GroundSense::remember_footholds(const GroundSenseInput& in) noexcept {
     if (!settled || remembered_stride_[leg] == phase.stride) continue;
     remembered_stride_[leg] = phase.stride;
     const Vec3& p_WF = in.state.p_WF[leg];
-    classifier_.add(leg, p_WF);
-    memory_.add(p_WF - foot_radius_ * Vec3::UnitZ(), in.state.p_WG.head<2>());
+    const double larger = foot_radius_[leg] - foot_radius_[Leg::kFR];
+    classifier_.add(leg, p_WF - larger * Vec3::UnitZ());
+    memory_.add(p_WF - foot_radius_[leg] * Vec3::UnitZ(), in.state.p_WG.head<2>());
   }
 }
 
-Foothold GroundSense::adapted(const Foothold& planned, double centre_offset) const noexcept {
+Foothold GroundSense::adapted(const Foothold& planned, Leg leg,
+                              double centre_offset) const noexcept {
   Foothold out = planned;
   out.n_W = Vec3::UnitZ();
   if (const auto ground = memory_.at(planned.p_WC.head<2>())) {
-    const double hidden_radius = foot_radius_ - centre_offset;
+    const double hidden_radius = foot_radius_[leg] - centre_offset;
     out.p_WC << ground->p_W, ground->height + hidden_radius;
   }
   out.p_WF = out.p_WC + centre_offset * out.n_W;

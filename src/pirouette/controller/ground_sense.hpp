@@ -30,8 +30,9 @@ struct GroundSenseOutput {
 /// Estimates the ground from the footholds.
 class GroundSense {
  public:
-  /// `foot_radius` (m) of the rolling foot; 0 for a point foot.
-  GroundSense(const TerrainConfig& config, double foot_radius, const RobotScale& scale = {});
+  /// `foot_radius` (m) of the foot spheres.
+  GroundSense(const TerrainConfig& config, const PerLeg<double>& foot_radius,
+              const RobotScale& scale = {});
 
   /// Starts with, and returns, the plane through the contact points `contacts` (m, world).
   TerrainPlane start(const std::array<Vec3, kLegCount>& contacts);
@@ -39,9 +40,9 @@ class GroundSense {
   /// Estimate after one tick of `dt` (s).
   GroundSenseOutput update(const GroundSenseInput& in, double dt) noexcept;
 
-  /// `planned`, on stepped ground moved off remembered edges and to the height of its tread.
-  /// `centre_offset` (m) is the sphere centre's height above the contact.
-  Foothold adapted(const Foothold& planned, double centre_offset) const noexcept;
+  /// `planned` of `leg`, on stepped ground moved off remembered edges and to the height of its
+  /// tread. `centre_offset` (m) is the sphere centre's height above the contact.
+  Foothold adapted(const Foothold& planned, Leg leg, double centre_offset) const noexcept;
 
   /// See base/memory.hpp.
   template <class Self, class Visit>
@@ -54,7 +55,7 @@ class GroundSense {
   void remember_footholds(const GroundSenseInput& in) noexcept;
 
   TerrainConfig config_;
-  double foot_radius_;
+  PerLeg<double> foot_radius_;
   PlaneEstimator plane_estimator_;
   GroundClassifier classifier_;
   FootholdMemory memory_;

@@ -14,7 +14,7 @@ JointControlOutput JointControl::update(const JointControlInput& in, const Robot
   wbc_in.swing = in.swing;
   wbc_in.contacts = in.contacts;
   wbc_in.mpc = in.mpc;
-  wbc_in.contact_radius = foot_radius_;
+  wbc_in.contact_radius = contact_radius_;
   wbc_in.n_W = in.contacts[Leg::kFR].n_W;
   const WbcOutput solution = wbc_.update(wbc_in, model);
   solve_us_ = watch.microseconds();

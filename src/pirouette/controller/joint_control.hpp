@@ -36,12 +36,13 @@ struct JointControlOutput {
 /// Computes the joint command of each tick.
 class JointControl {
  public:
-  /// `foot_radius` (m) of the rolling foot; 0 for a point foot.
+  /// `contact_radius` (m) of the rolling feet; 0 of a point foot.
   JointControl(const WbcConfig& wbc, const MpcConfig& limits, const JointConfig& joint,
-               const PerLeg<LegGeometry>& legs, double foot_radius, const RobotScale& scale = {})
+               const PerLeg<LegGeometry>& legs, const PerLeg<double>& contact_radius,
+               const RobotScale& scale = {})
       : config_(joint),
         legs_(legs),
-        foot_radius_(foot_radius),
+        contact_radius_(contact_radius),
         wbc_(wbc, limits, scale),
         guard_(joint, legs) {}
 
@@ -58,14 +59,14 @@ class JointControl {
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, legs, foot_radius, wbc, guard, failures, solve_us] = self;
+    auto& [config, legs, contact_radius, wbc, guard, failures, solve_us] = self;
     visit(guard, failures);
   }
 
  private:
   JointConfig config_;
   PerLeg<LegGeometry> legs_;
-  double foot_radius_;
+  PerLeg<double> contact_radius_;
   WholeBodyControl wbc_;
   CommandGuard guard_;
   int failures_ = 0;

@@ -24,7 +24,7 @@ Localization::Localization(const ControllerConfig& config, const PerLeg<LegGeome
     : config_(config),
       legs_(legs),
       scale_(scale),
-      foot_(config.foot.model, legs[Leg::kFR].foot_radius),
+      rolling_feet_(pirouette::rolling_feet(config.foot.model, legs)),
       attitude_filter_(config.estimation, 1.0 / config.control.rate),
       odometry_filter_(at_rate(config.estimation, config.control.rate)),
       creep_(config.creep, scale),
@@ -73,12 +73,13 @@ FootOdometry Localization::foot_odometry(const LocalizationInput& in, const Foot
   out.v_BF_W = R_WB * (w_WB_B.cross(foot.p_BF) + foot.v_BF_B);
   const Vec3 w_WS_W = R_WB * (w_WB_B + foot.w_BS_B);
   const Vec3& n_W = in.last_contacts[leg].n_W;
-  out.v_WF_stance_W =
-      foot_.rolling_velocity(w_WS_W, n_W) + std::abs(w_WS_W.dot(n_W)) * creep.slip_per_twist_W;
+  out.v_WF_stance_W = rolling_feet_[leg].rolling_velocity(w_WS_W, n_W) +
+                      std::abs(w_WS_W.dot(n_W)) * creep.slip_per_twist_W;
   out.trust = trust(in, leg);
   const TerrainPlane& plane = in.last_plane;
   const Vec3 p_WF = in.last_state.p_WB + out.p_BF_W;
-  const double above_plane = foot_.radius() * std::sqrt(1.0 + square(plane.a1) + square(plane.a2));
+  const double above_plane =
+      rolling_feet_[leg].radius() * std::sqrt(1.0 + square(plane.a1) + square(plane.a2));
   out.centre_height = plane.height(p_WF.x(), p_WF.y()) + above_plane;
   // On steps the plane is nobody's ground.
   out.use_height = !in.last_ground.stepped;
@@ -93,7 +94,7 @@ Vec3 Localization::joint_feedback_force(const LocalizationInput& in, Leg leg) co
   const Vec3 tau =
       c.kp.cwiseProduct(c.q - q) + c.kd.cwiseProduct(c.dq - in.sensors.joint_velocity[leg]);
   const Vec3 n_B = R_WB.transpose() * in.last_contacts[leg].n_W;
-  const Mat3 J_C = foot_.contact_jacobian(legs_[leg], q, n_B);
+  const Mat3 J_C = rolling_feet_[leg].contact_jacobian(legs_[leg], q, n_B);
   // Near a straight leg a small torque would pass for a large force.
   constexpr double kMinDeterminant = 1e-3;  // m^3, of a robot of scale 1
   if (std::abs(J_C.determinant()) < kMinDeterminant * scale_.volume()) return Vec3::Zero();
@@ -228,9 +229,9 @@ FootContacts Localization::find_contacts(const ContactInput& in, double dt) noex
         late_in_swing && (landed_early_[leg] || (flag_believed && contact.measured));
     contact.in_contact = phase.stance || landed_early_[leg];
     contact.n_W = n_W;
-    contact.p_WC = foot_.contact_point(state.p_WF[leg], n_W);
+    contact.p_WC = rolling_feet_[leg].contact_point(state.p_WF[leg], n_W);
     contact.v_WF_rolling_W =
-        foot_.rolling_velocity(state.R_WB * (state.w_WB_B + in.feet[leg].w_BS_B), n_W);
+        rolling_feet_[leg].rolling_velocity(state.R_WB * (state.w_WB_B + in.feet[leg].w_BS_B), n_W);
   }
   return out;
 }

@@ -78,13 +78,13 @@ class Localization {
   /// Feet whose contact flag is not used because it makes no sense (FlagTrust).
   PerLeg<bool> dropped_flags() const noexcept;
 
-  const RollingFoot& foot() const { return foot_; }  ///< foot model in use
+  const PerLeg<RollingFoot>& rolling_feet() const { return rolling_feet_; }  ///< foot models in use
 
   /// See base/memory.hpp.
   template <class Self, class Visit>
   static void memory(Self& self, Visit&& visit) {
-    auto& [config, legs, scale, foot, attitude_filter, odometry_filter, creep, tilt_bias, yaw,
-           landed_early, flags, flag_trust] = self;
+    auto& [config, legs, scale, rolling_feet, attitude_filter, odometry_filter, creep, tilt_bias,
+           yaw, landed_early, flags, flag_trust] = self;
     visit(attitude_filter, odometry_filter, creep, tilt_bias, yaw, landed_early, flags, flag_trust);
   }
 
@@ -110,7 +110,7 @@ class Localization {
   ControllerConfig config_;
   PerLeg<LegGeometry> legs_;
   RobotScale scale_;
-  RollingFoot foot_;
+  PerLeg<RollingFoot> rolling_feet_;
   AttitudeFilter attitude_filter_;
   LegOdometryFilter odometry_filter_;
   SpinCreep creep_;

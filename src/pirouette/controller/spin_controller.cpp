@@ -22,6 +22,7 @@
 #include "pirouette/controller/motion_planner.hpp"
 #include "pirouette/controller/sensor_guard.hpp"
 #include "pirouette/controller/standing_check.hpp"
+#include "pirouette/controller/standing_load.hpp"
 #include "pirouette/controller/tick_clock.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "pirouette/model/robot_model.hpp"
@@ -40,6 +41,18 @@ PerLeg<Vec3> nominal_posture(const PerLeg<LegGeometry>& legs, double com_height)
     q[leg] = inverse_kinematics(g, p_HF).q;
   }
   return q;
+}
+
+PerLeg<double> foot_radii(const PerLeg<LegGeometry>& legs) {
+  PerLeg<double> radii;
+  for (const Leg leg : kLegs) radii[leg] = legs[leg].foot_radius;
+  return radii;
+}
+
+PerLeg<double> contact_radii(const PerLeg<RollingFoot>& feet) {
+  PerLeg<double> radii;
+  for (const Leg leg : kLegs) radii[leg] = feet[leg].radius();
+  return radii;
 }
 
 Vec2 hip_centre(const PerLeg<LegGeometry>& legs) {
@@ -111,14 +124,15 @@ struct SpinController::Impl {
         standing_check(c.safety, 1.0 / c.control.rate, model.mass(), stance.p_BG, model.legs()),
         localization(c, model.legs(), model.scale()),
         gait_timing(c.gait),
-        ground_sense(c.terrain, model.legs()[Leg::kFR].foot_radius, model.scale()),
+        ground_sense(c.terrain, foot_radii(model.legs()), model.scale()),
         motion_planner(c.path, c.aid, c.control.rate),
-        foot_planner(c.foothold, c.gait, c.body.height, localization.foot(), model.legs(), stance),
+        foot_planner(c.foothold, c.gait, c.body.height, localization.rolling_feet(), model.legs(),
+                     stance),
         com_planner(c.com),
         force_planner(c.mpc, 1.0 / c.control.rate, c.gait.period, com_height, model.mass(),
                       model.inertia(stance.q)),
-        joint_control(c.wbc, c.mpc, c.joint, model.legs(), localization.foot().radius(),
-                      model.scale()) {
+        joint_control(c.wbc, c.mpc, c.joint, model.legs(),
+                      contact_radii(localization.rolling_feet()), model.scale()) {
     reset(BasePose{});
   }
 
@@ -198,7 +212,8 @@ void SpinController::Impl::start_from(const SensorReading& first) {
   lift_off_points.start(last.state.p_WF);
   std::array<Vec3, kLegCount> contacts;
   for (const Leg leg : kLegs) {
-    contacts[index(leg)] = localization.foot().contact_point(last.state.p_WF[leg], Vec3::UnitZ());
+    contacts[index(leg)] =
+        localization.rolling_feet()[leg].contact_point(last.state.p_WF[leg], Vec3::UnitZ());
   }
   last.plane = ground_sense.start(contacts);
   joint_control.start(first.joint_position);
@@ -387,6 +402,8 @@ Result<SpinController> SpinController::create(const ControllerConfig& config,
                                               const RobotDescription& robot) {
   Result<RobotModel> model = RobotModel::load(robot);
   if (!model.ok()) return model.errors();
+  Errors errors = check_standing(config, model.value());
+  if (!errors.empty()) return errors;
   return SpinController(std::make_unique<Impl>(config, std::move(model).value()));
 }
 

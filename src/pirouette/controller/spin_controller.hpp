@@ -24,7 +24,8 @@ namespace pirouette {
 class SpinController final : public Controller {
  public:
   /// Reads the robot (RobotModel::load). Readings and commands are in the joints of its file. The
-  /// errors name the file and what it lacks.
+  /// errors name the file and what it lacks, or why the robot cannot carry itself
+  /// (check_standing).
   static Result<SpinController> create(const ControllerConfig& config,
                                        const RobotDescription& robot);
 

@@ -37,6 +37,7 @@ struct StanceMotion {
 /// `n_W` is the unit normal of the ground; w_WS the angular velocity of the shank S in the world.
 class RollingFoot {
  public:
+  RollingFoot() = default;  ///< a point foot
   /// `radius` (m) of the foot sphere.
   RollingFoot(FootModel model, double radius)
       : radius_(model == FootModel::kRolling ? radius : 0.0) {}
@@ -86,7 +87,14 @@ class RollingFoot {
   Vec3 stance_travel(const LegGeometry& leg, const StanceMotion& motion) const;
 
  private:
-  double radius_;
+  double radius_ = 0.0;
 };
+
+/// The feet of `legs`.
+inline PerLeg<RollingFoot> rolling_feet(FootModel model, const PerLeg<LegGeometry>& legs) {
+  PerLeg<RollingFoot> feet;
+  for (const Leg leg : kLegs) feet[leg] = RollingFoot(model, legs[leg].foot_radius);
+  return feet;
+}
 
 }  // namespace pirouette

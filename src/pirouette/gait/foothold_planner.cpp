@@ -41,7 +41,7 @@ FootholdPlan FootholdPlanner::update(const FootholdInput& in) const noexcept {
     Foothold& foothold = plan[leg];
     foothold.n_W = n_W;
     foothold.p_WC << contact, in.plane.height(contact);
-    foothold.p_WF = foothold.p_WC + in.centre_offset * n_W;
+    foothold.p_WF = foothold.p_WC + in.centre_offset[leg] * n_W;
   }
   return plan;
 }

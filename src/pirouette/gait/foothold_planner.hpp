@@ -24,10 +24,10 @@ struct FootholdInput {
       PerLeg<Vec2>::filled(Vec2::Zero());  ///< m, foothold at mid-stance from the CoM, heading axes
   PerLeg<Vec2> rolling_shift_H = PerLeg<Vec2>::filled(
       Vec2::Zero());  ///< m, half the contact's travel in a stance, heading axes at mid-stance
-  double centre_offset = 0.0;  ///< m, sphere centre above the contact along the normal
-  Vec2 p_WG = Vec2::Zero();    ///< m, CoM
-  Vec2 v_WG_H = Vec2::Zero();  ///< m/s, measured velocity of the CoM, heading axes
-  double yaw = 0.0;            ///< rad, of the trunk
+  PerLeg<double> centre_offset{};  ///< m, sphere centre above the contact along the normal
+  Vec2 p_WG = Vec2::Zero();        ///< m, CoM
+  Vec2 v_WG_H = Vec2::Zero();      ///< m/s, measured velocity of the CoM, heading axes
+  double yaw = 0.0;                ///< rad, of the trunk
   /// s, least gain of the velocity error: sqrt(height / g), the time constant of a linear inverted
   /// pendulum, puts footholds at the capture point. 0: Raibert's law alone.
   double capture_time = 0.0;

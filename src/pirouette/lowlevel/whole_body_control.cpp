@@ -47,7 +47,7 @@ void WholeBodyControl::map_legs(const WbcInput& in, const RobotModel& model) noe
     if (in.contacts[leg].in_contact) {
       // The material contact point accelerates like a rolling sphere's (E13), not like a fixed
       // point.
-      const Mat3 arm = in.contact_radius * skew(in.contacts[leg].n_W);
+      const Mat3 arm = in.contact_radius[leg] * skew(in.contacts[leg].n_W);
       J += arm * model.shank_jacobian(leg);
       task = -model.foot_bias(leg) - arm * model.shank_bias(leg);
     } else {

@@ -14,13 +14,13 @@ namespace pirouette {
 
 /// Input of WholeBodyControl::update().
 struct WbcInput {
-  RobotState state;             ///< estimated state of the robot
-  BodyReference reference;      ///< body reference
-  PerLeg<SwingTarget> swing{};  ///< swing targets
-  FootContacts contacts;        ///< contact of each foot
-  ContactForces mpc;            ///< forces of the MPC
-  double contact_radius = 0.0;  ///< m, of the rolling foot; 0 for a point foot
-  Vec3 n_W = Vec3::UnitZ();     ///< unit normal of the ground, for the friction pyramids
+  RobotState state;                 ///< estimated state of the robot
+  BodyReference reference;          ///< body reference
+  PerLeg<SwingTarget> swing{};      ///< swing targets
+  FootContacts contacts;            ///< contact of each foot
+  ContactForces mpc;                ///< forces of the MPC
+  PerLeg<double> contact_radius{};  ///< m, of the rolling feet; 0 of a point foot
+  Vec3 n_W = Vec3::UnitZ();         ///< unit normal of the ground, for the friction pyramids
 };
 
 /// Output of WholeBodyControl::update().
