@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "become_python.hpp"
 #include "config_command.hpp"
 #include "exit_code.hpp"
 #include "pirouette/base/version.hpp"
@@ -52,22 +53,6 @@ bool has_verb(const CLI::App& app, const std::string& verb) {
                      [&](const CLI::App* command) { return command->check_name(verb); });
 }
 
-/// Becomes the module of the source tree's Python package; returns only when there is none.
-void run_module(const std::string& verb, char** arguments) {
-  namespace fs = std::filesystem;
-  const fs::path root = data_dir();
-  std::string python = (root / ".venv" / "bin" / "python").string();
-  if (!fs::exists(root / "python" / "pirouette" / verb / "__main__.py") || !fs::exists(python)) {
-    return;
-  }
-  ::setenv("PYTHONPATH", (root / "python").c_str(), 1);
-  std::string flag = "-m", module = "pirouette." + verb;
-  std::vector<char*> line = {python.data(), flag.data(), module.data()};
-  while (*++arguments != nullptr) line.push_back(*arguments);
-  line.push_back(nullptr);
-  ::execv(python.c_str(), line.data());
-}
-
 std::string own_path() {
   std::error_code error;
   const std::string path = std::filesystem::read_symlink("/proc/self/exe", error).string();
@@ -81,8 +66,9 @@ int run_external(const CLI::App& app, char** arguments) {
   const std::string program = "pirouette-" + verb;
   if (verb.find('/') == verb.npos) {
     ::setenv("PIROUETTE", own_path().c_str(), 0);  // for those that run it in turn
-    ::execvp(program.c_str(), arguments);
-    run_module(verb, arguments);
+    std::string name = program;
+    arguments[0] = name.data();
+    become_python(verb, arguments);
   }
   if (std::find(kPythonVerbs.begin(), kPythonVerbs.end(), verb) != kPythonVerbs.end()) {
     return report({{"", 0, "",

@@ -15,6 +15,8 @@ class RobotCommand {
 
  private:
   int check() const;
+  /// Draws the robot with the Python package.
+  int draw() const;
   int describe() const;
   int list() const;
 
@@ -24,6 +26,7 @@ class RobotCommand {
   CLI::App* list_;
   std::string robot_;
   bool json_ = false;
+  std::string picture_;
 };
 
 }  // namespace pirouette::app

@@ -11,6 +11,7 @@
 #include "pirouette/config/config_doc.hpp"
 #include "pirouette/runtime/recording.hpp"
 #include "pirouette/study/configured_trial.hpp"
+#include "pirouette/study/robot_check.hpp"
 #include "pirouette/trial/run_folder.hpp"
 #include "progress_line.hpp"
 #include "realtime.hpp"
@@ -43,6 +44,9 @@ std::optional<Error> save(RunFolder& folder, NpyRowsFile& trace, const Config& c
     return error;
   }
   if (auto error = folder.write(kMetricsFile, to_json(metrics))) return error;
+  const Result<std::string> robot = read_robot_mjcf(config.robot);
+  if (!robot) return robot.errors().front();
+  if (auto error = folder.write(kRobotFile, robot.value())) return error;
   if (auto error =
           write_terrain(folder, config.plant.terrain, static_cast<std::uint64_t>(config.run.seed)))
     return error;

@@ -17,6 +17,7 @@
 #include "pirouette/config/toml.hpp"
 #include "pirouette/metrics/motion_metrics.hpp"
 #include "pirouette/study/configured_trial.hpp"
+#include "pirouette/study/robot_check.hpp"
 
 namespace pirouette::python {
 
@@ -134,6 +135,17 @@ NB_MODULE(_core, module) {
         return std::pair{range->min, range->max};
       },
       "key"_a, "Smallest and largest value of a numeric parameter; None for any other key.");
+  module.def("known_robots", &known_robots, "Names of the robots in the box.");
+  module.def(
+      "robot_check",
+      [](const std::string& robot) {
+        return robot_check_json(python::value_or_raise(check_robot(robot)));
+      },
+      "robot"_a, "What was found of a robot, as JSON.");
+  module.def(
+      "robot_mjcf",
+      [](const std::string& robot) { return python::value_or_raise(read_robot_mjcf(robot)); },
+      "robot"_a, "The robot as it was read, as the text of an MJCF file.");
   module.def("known_controllers", &known_controllers, "Names of the controller bundles.");
   module.def("run_trial", &python::run, "config"_a, "trace"_a,
              "Simulates one run; writes the trace to a file, returns metrics.json.");

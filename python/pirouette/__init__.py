@@ -22,6 +22,8 @@ if TYPE_CHECKING:
         SensorReading,
         Simulation,
         metrics,
+        robot_check,
+        robots,
         run,
     )
 
@@ -38,6 +40,8 @@ __all__ = [
     "SensorReading",
     "Simulation",
     "metrics",
+    "robot_check",
+    "robots",
     "run",
 ]
 

@@ -32,6 +32,8 @@ __all__ = [
     "SensorReading",
     "Simulation",
     "metrics",
+    "robot_check",
+    "robots",
     "run",
 ]
 
@@ -53,6 +55,19 @@ class Result:
     def fell(self) -> bool:
         """The robot fell, or its controller gave up for a second."""
         return self.metrics["fell"]
+
+
+def robots() -> list[str]:
+    """Names of the robots in the box."""
+    return _core.known_robots()
+
+
+def robot_check(robot: str | Path) -> dict[str, Any]:
+    """What was found, mended and assumed of a robot: the name of one in the box, or an MJCF, URDF or
+    robot.toml file. Lengths in m, angles in rad, torques in N m; lists hold abad, hip, knee;
+    points_B are the abad axis, hip, knee and foot of the standing robot in trunk axes, axes_B the
+    joints' axes. `problems` says why it cannot walk. Raises Error for a file that cannot be read."""
+    return json.loads(_core.robot_check(str(robot)))
 
 
 def run(config: ConfigLike = None, **options: Unpack[Options]) -> Result:

@@ -37,7 +37,10 @@ def find_robot(robot: str, folders: Iterable[Path] = ()) -> Path:
 
 
 def robot_file(run: Run) -> Path:
-    """The MJCF of a run's robot."""
+    """The MJCF of a run's robot: as it was read for the run, else as it is now."""
+    kept = run.folder / "robot.xml"
+    if kept.is_file():
+        return kept
     try:
         return find_robot(run.config["robot"], run.folder.parents)
     except RunError as error:
@@ -46,6 +49,11 @@ def robot_file(run: Run) -> Path:
 
 def load_model(run: Run) -> mujoco.MjModel:
     return read_model(robot_file(run))
+
+
+def read_text(xml: str) -> mujoco.MjModel:
+    """The model of an MJCF's text whose meshes have absolute paths."""
+    return mujoco.MjModel.from_xml_string(xml)
 
 
 def read_model(file: Path) -> mujoco.MjModel:
@@ -66,9 +74,20 @@ class Poser:
             raise RunError(f"the robot has {len(free)} free joints; expected one, on the trunk")
         self.trunk = int(model.jnt_bodyid[free[0]])
         self._base = int(model.jnt_qposadr[free[0]])
-        joints = [j for leg in LEGS for j in self._chain(leg)]
+        joints = self._named_joints() or [j for leg in LEGS for j in self._chain(leg)]
         self.joint_names = [model.joint(j).name for j in joints]  # legs in the order of the trace
         self._joints = model.jnt_qposadr[joints]
+
+    def _named_joints(self) -> list[int]:
+        """The joints that the file itself names in the trace's order; none in other files."""
+        for i in range(self.model.ntext):
+            if mujoco.mj_id2name(self.model, mujoco.mjtObj.mjOBJ_TEXT, i) != "pirouette_joints":
+                continue
+            start = self.model.text_adr[i]
+            data = bytes(self.model.text_data[start : start + self.model.text_size[i]])
+            names = data.rstrip(b"\0").decode().split(";")
+            return [self.model.joint(name).id for name in names]
+        return []
 
     def _chain(self, leg: str) -> list[int]:
         """The leg's three hinges in the order abad, hip, knee."""

@@ -58,9 +58,10 @@ const std::map<std::string, Patterns> kMayInclude = {
     {"src/pirouette/metrics", kBelowTrial},
     {"src/pirouette/trial",
      kBelowTrial + Patterns{"controller/*", "runtime/*", "plant/*", "metrics/*"}},
-    {"src/pirouette/study", kBelowTrial + kWorld +
-                                Patterns{"config/*", "foot/leg_kinematics.hpp",
-                                         "model/robot_description.hpp", "model/robot_model.hpp"}},
+    {"src/pirouette/study",
+     kBelowTrial + kWorld +
+         Patterns{"config/*", "foot/leg_kinematics.hpp", "model/robot_description.hpp",
+                  "model/robot_model.hpp", "model/robot_text.hpp"}},
     {"src/pirouette/report", {"base/*", "config/*", "metrics/*", "plant/*", "trial/*", "study/*"}},
 
     {"apps/pirouette",

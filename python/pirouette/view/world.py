@@ -7,7 +7,8 @@ import viser
 
 from pirouette.api import Simulation
 from pirouette.ground import Ground
-from pirouette.robot import find_robot, read_model
+from pirouette import _core
+from pirouette.robot import read_text
 from pirouette.scene import TILE, RobotNodes, add_ground
 
 ROOT = "/world"
@@ -23,7 +24,7 @@ class World:
         self.scene = server.scene
         self.scene.configure_default_lights(cast_shadow=False)
         self.frame = self.scene.add_frame(ROOT, show_axes=False)
-        model = read_model(find_robot(simulation.config["robot"]))
+        model = read_text(_core.robot_mjcf(simulation.config["robot"]))
         self.robot = RobotNodes(self.scene, ROOT, model)
         server.initial_camera.look_at = (0.0, 0.0, 0.12)
         server.initial_camera.position = (1.0, -0.7, 0.7)

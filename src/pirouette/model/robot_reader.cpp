@@ -12,6 +12,7 @@
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/model/foot_finder.hpp"
 #include "pirouette/model/leg_finder.hpp"
+#include "pirouette/model/robot_text.hpp"
 #include "pirouette/model/spec_repair.hpp"
 
 namespace pirouette {
@@ -449,6 +450,40 @@ Result<ReadRobot> Reader::read() {
 
 }  // namespace
 
-Result<ReadRobot> read_robot(const RobotDescription& given) { return Reader(given).read(); }
+Result<ReadRobot> read_robot(const RobotDescription& given) {
+  catch_mujoco_errors();
+  return Reader(given).read();
+}
+
+Result<std::string> robot_mjcf(const RobotDescription& given) {
+  Result<ReadRobot> robot = read_robot(given);
+  if (!robot) return robot.errors();
+  mjSpec& spec = *robot.value().spec;
+  const fs::path folder = fs::absolute(given.file).parent_path();
+  for (mjString* place : {spec.compiler.meshdir, spec.compiler.texturedir})
+    mjs_setString(place, (folder / mjs_getString(place)).lexically_normal().c_str());
+  std::string joints;
+  for (const LegDescription& leg : robot.value().description.legs) {
+    for (const std::string& joint : leg.joints) joints += (joints.empty() ? "" : ";") + joint;
+  }
+  mjsText* text = mjs_addText(&spec);
+  mjs_setName(text->element, "pirouette_joints");
+  mjs_setString(text->data, joints.c_str());
+
+  const ModelPtr model(mj_compile(&spec, nullptr));
+  if (!model) return Error{given.file, 0, "", mjs_getError(&spec)};
+  std::array<char, 1024> message{};
+  std::string xml(1 << 20, '\0');
+  int needed = mj_saveXMLString(&spec, xml.data(), static_cast<int>(xml.size()), message.data(),
+                                static_cast<int>(message.size()));
+  if (needed > 0) {
+    xml.assign(static_cast<std::size_t>(needed) + 1, '\0');
+    needed = mj_saveXMLString(&spec, xml.data(), static_cast<int>(xml.size()), message.data(),
+                              static_cast<int>(message.size()));
+  }
+  if (needed != 0) return Error{given.file, 0, "", std::string("as MJCF: ") + message.data()};
+  xml.resize(xml.find('\0'));
+  return xml;
+}
 
 }  // namespace pirouette

@@ -116,7 +116,8 @@ std::vector<std::string> robot_assumptions(const Config& config) {
   const Result<RobotModel> model = RobotModel::load(robot.value());
   if (!model) return {};
   std::vector<std::string> texts = model.value().notes();
-  for (std::string& text : texts) text = robot.value().file + ": " + text;
+  for (std::string& text : texts)
+    text = std::filesystem::path(robot.value().file).filename().string() + ": " + text;
   return texts;
 }
 

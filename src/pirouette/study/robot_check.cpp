@@ -13,6 +13,7 @@
 #include "pirouette/config/toml.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "pirouette/model/robot_model.hpp"
+#include "pirouette/model/robot_text.hpp"
 
 namespace pirouette {
 namespace {
@@ -101,6 +102,14 @@ Result<RobotCheck> check_robot(const std::string& robot) {
   for (Error& problem : out.problems) problem.file = out.description.file;
   out.remarks = remarks_of(out);
   return out;
+}
+
+Result<std::string> read_robot_mjcf(const std::string& robot) {
+  Config config;
+  config.robot = robot;
+  const Result<RobotDescription> description = resolve_robot(config);
+  if (!description) return description.errors();
+  return robot_mjcf(description.value());
 }
 
 std::string robot_check_text(const RobotCheck& check) {

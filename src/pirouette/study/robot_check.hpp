@@ -28,6 +28,10 @@ struct RobotCheck {
 /// errors are those of a file that cannot be read.
 Result<RobotCheck> check_robot(const std::string& robot);
 
+/// The text of an MJCF file with the robot that `robot` names as the controller and the plant read
+/// it (model/robot_reader.hpp).
+Result<std::string> read_robot_mjcf(const std::string& robot);
+
 /// The check as a text with a table of joints.
 std::string robot_check_text(const RobotCheck& check);
 

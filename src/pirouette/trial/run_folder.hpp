@@ -1,5 +1,5 @@
-// Folder of a run: run.toml, metrics.json, trace.npy, terrain.npy, perhaps a recording; written
-// completely or not at all.
+// Folder of a run: run.toml, metrics.json, trace.npy, terrain.npy, robot.xml, perhaps a recording;
+// written completely or not at all.
 #pragma once
 
 #include <array>
@@ -18,12 +18,13 @@ inline constexpr const char* kRunFile = "run.toml";          ///< Config of the 
 inline constexpr const char* kMetricsFile = "metrics.json";  ///< Metrics
 inline constexpr const char* kTraceFile = "trace.npy";       ///< rows of TraceRow
 inline constexpr const char* kTerrainFile = "terrain.npy";   ///< heights of the ground
+inline constexpr const char* kRobotFile = "robot.xml";       ///< MJCF of the robot as it was read
 /// Names of the files in the folder that this product wrote, one on each line.
 inline constexpr const char* kRecordFile = "files.txt";
 /// Names of the files that a run writes.
-inline constexpr std::array kRunFiles = {kRunFile,     kMetricsFile,   kTraceFile,
-                                         kTerrainFile, kRecordingFile, kRecordingStartFile,
-                                         kRecordFile};
+inline constexpr std::array kRunFiles = {
+    kRunFile,   kMetricsFile,   kTraceFile,          kTerrainFile,
+    kRobotFile, kRecordingFile, kRecordingStartFile, kRecordFile};
 /// Names that `pirouette report` and `export` add to the record.
 inline constexpr std::array kDerivedFiles = {"report.html", "trace.csv", "trace.mcap",
                                              "trace.parquet", "video.mp4"};
