@@ -78,7 +78,7 @@ void ConfigOptions::add_common(CLI::App& command) {
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->allow_extra_args(false);
   command.add_option("--robot", robot_, "Folder under robots/, or an MJCF file [mini_cheetah]")
-      ->type_name("NAME|FILE.xml");
+      ->type_name("NAME|FILE");
   command.add_option("--controller", controller_, "mit, fkm, asc or pirouette [pirouette]")
       ->type_name("NAME");
   command.add_option("--profile", profile_, "Plant: nominal or realistic [nominal]")
@@ -95,7 +95,7 @@ void ConfigOptions::add_run(CLI::App& command) {
   add_shortcut(command, {"--terrain", "plant.terrain"}, "WHAT",
                "flat, slope:10 (degrees), slope:10+rough:0.02, stairs:0.03x0.20 (m), "
                "stairs:0.03x0.20@30, rough:0.04, blocks:0.05, patch:0.3x0.6 (friction, m) or "
-               "soft:0.05 (s) [flat]");
+               "soft:0.05 (s); lengths also in shares of the CoM's height, stairs:11%x74% [flat]");
   add_shortcut(command, {"--estimator", "estimation.source"}, "WHICH", "kalman or truth [kalman]");
   command.add_option("--sensors", sensors_, "noisy or ideal [noisy]")->type_name("WHICH");
   command

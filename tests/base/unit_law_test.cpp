@@ -73,6 +73,15 @@ TEST(RobotDefaults, AreTheMiniCheetahsOwn) {
   EXPECT_EQ(dump_toml(fitted), dump_toml(Config{}));
 }
 
+TEST(RobotDefaults, GiveGroundInSharesOfTheHeight) {
+  EXPECT_EQ(terrain_in_metres("stairs:11%x74%", 0.27), "stairs:0.0297x0.1998");
+  EXPECT_EQ(terrain_in_metres("slope:10+rough:7.5%", 0.4), "slope:10+rough:0.03");
+  EXPECT_EQ(terrain_in_metres("stairs:0.03x0.20@30", 0.4), "stairs:0.03x0.20@30");
+  const Config config =
+      load_config({.robot = "go1", .overrides = {"plant.terrain=stairs:10%x50%"}}).value();
+  EXPECT_EQ(config.plant.terrain, "stairs:0.03x0.15");
+}
+
 TEST(RobotDefaults, LetTheExplicitKeyWin) {
   const Config config =
       load_config({.robot = "go1", .overrides = {"mpc.max_normal_force=77"}}).value();

@@ -118,6 +118,19 @@ TEST(Terrain, StairsHaveTheOriginInTheMiddleOfATread) {
   EXPECT_NEAR(stairs.normal().dot(Vec3(0.3, 0.0, 0.05)), 0.0, 1e-12);
 }
 
+TEST(Terrain, BesideEdgesABallTouchesNone) {
+  const Terrain stairs(parse_terrain("stairs:0.05x0.20@30").value(), 1);
+  const double r = 0.03;
+  for (double x = -0.5; x < 0.5; x += 0.013) {
+    const Vec2 xy(x, 0.3 * x), moved = stairs.beside_edges(xy, r);
+    EXPECT_EQ(stairs.height(moved), stairs.height(xy));  // the same tread
+    EXPECT_NEAR(stairs.ball_height(moved, r), stairs.height(xy) + r, 1e-12);
+    EXPECT_LE((moved - xy).norm(), r + 1.1e-4);
+  }
+  const Terrain flat(parse_terrain("flat").value(), 1);
+  EXPECT_EQ(flat.beside_edges(Vec2(0.1, 0.2), r), Vec2(0.1, 0.2));
+}
+
 TEST(Terrain, StairsAtAnAngleClimbInTheirDirection) {
   const Terrain turned = make_terrain("stairs:0.05x0.3@30"),
                 straight = make_terrain("stairs:0.05x0.3");

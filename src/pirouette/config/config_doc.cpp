@@ -7,7 +7,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "pirouette/base/fit_to_scale.hpp"
 #include "pirouette/config/config.hpp"
+#include "pirouette/config/robot_defaults.hpp"
 
 namespace pirouette {
 namespace {
@@ -76,6 +78,25 @@ std::string enum_names() {
   return text;
 }
 
+/// Laws of a parameter, one for each of a list's units that differ.
+std::string law_of(std::string_view key, std::string_view unit) {
+  if (key == "body.height") return "by the legs";
+  std::string text;
+  bool differ = false, any = false;
+  for (const std::string_view one : units_of(unit)) {
+    const std::optional<UnitLaw> law = parameter_law(key, one);
+    const std::string words = law ? law_text(*law) : "";
+    any = any || !words.empty();
+    if (text.empty()) {
+      text = words.empty() ? "1" : words;
+    } else if (text != words) {
+      differ = true;
+      text += ", " + (words.empty() ? std::string("1") : words);
+    }
+  }
+  return any || differ ? text : "";
+}
+
 /// Visits one group: its own parameters go into its entry of `groups`, its subgroups behind it,
 /// because in TOML a table's values come before its subtables.
 class Describer {
@@ -88,18 +109,18 @@ class Describer {
   template <class T>
   void operator()(const T& value, const std::string& name, std::string unit, Range range,
                   std::string meaning) const {
-    add({prefix_ + name, name, literal(value), std::move(unit), allowed(value, range),
+    add({prefix_ + name, name, literal(value), std::move(unit), "", allowed(value, range),
          std::move(meaning), range});
   }
 
   template <class T>
   void operator()(const T& value, const std::string& name, std::string meaning) const {
     if constexpr (std::is_enum_v<T>) {
-      add({prefix_ + name, name, literal(enum_name(value)), "", enum_names<T>(), meaning, {}});
+      add({prefix_ + name, name, literal(enum_name(value)), "", "", enum_names<T>(), meaning, {}});
     } else if constexpr (std::is_same_v<T, bool>) {
-      add({prefix_ + name, name, literal(value), "", "true, false", meaning, {}});
+      add({prefix_ + name, name, literal(value), "", "", "true, false", meaning, {}});
     } else if constexpr (std::is_same_v<T, std::string>) {
-      add({prefix_ + name, name, literal(value), "", "", meaning, {}});
+      add({prefix_ + name, name, literal(value), "", "", "", meaning, {}});
     } else {
       T::fields(value, Describer(groups_, prefix_ + name, std::move(meaning)));
     }
@@ -107,6 +128,7 @@ class Describer {
 
  private:
   void add(ParameterInfo parameter) const {
+    if (!parameter.unit.empty()) parameter.law = law_of(parameter.key, parameter.unit);
     groups_[own_].parameters.push_back(std::move(parameter));
   }
 
@@ -174,14 +196,22 @@ std::string dump_toml(const Config& config) {
 }
 
 std::string config_markdown() {
-  std::string text = "# Parameters\n";
+  std::string text =
+      "# Parameters\n\nDefaults are those of the Mini Cheetah. The column law says how they follow "
+      "another robot: u is its mass over the Mini Cheetah's 8.912 kg, l the length of its legs, "
+      "hip "
+      "to foot, over 0.415 m; times go with l^0.5, so that robots of all sizes move alike. Where "
+      "the law is empty the default is the same for all. body.height leaves the legs as bent as "
+      "the "
+      "Mini Cheetah's. What a file or --set says holds as it stands; run.toml has what came of "
+      "it.\n";
   for (const ParameterGroup& group : describe(Config{})) {
     text += group.key.empty() ? "" : "\n## " + group.key + "\n";
     text += "\n" + group.meaning +
-            "\n\n| key | default | unit | allowed | meaning |\n|---|---|---|---|---|\n";
+            "\n\n| key | default | unit | law | allowed | meaning |\n|---|---|---|---|---|---|\n";
     for (const ParameterInfo& p : group.parameters) {
       text += "| `" + p.key + "` | `" + cell(p.value) + "` | " + cell(p.unit) + " | " +
-              cell(p.allowed) + " | " + cell(p.meaning) + " |\n";
+              cell(p.law) + " | " + cell(p.allowed) + " | " + cell(p.meaning) + " |\n";
     }
   }
   return text;

@@ -18,6 +18,7 @@ struct ParameterInfo {
   std::string name;     ///< last part of the key
   std::string value;    ///< as a TOML literal
   std::string unit;     ///< empty where there is none; "1" for a pure number
+  std::string law;      ///< how the default follows the robot, "u l^1.5"; empty: it does not
   std::string allowed;  ///< "0.15 to 2", "centre, rolling", "true, false"; empty for free text
   std::string meaning;  ///< a sentence
   std::optional<Range> range;  ///< of a number, or of each of a list of numbers

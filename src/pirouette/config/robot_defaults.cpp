@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <iomanip>
+#include <regex>
+#include <sstream>
 
 #include "pirouette/base/fit_to_scale.hpp"
 #include "pirouette/config/config.hpp"
@@ -26,6 +29,20 @@ std::optional<UnitLaw> world_law(std::string_view key, std::string_view unit) {
 std::optional<UnitLaw> parameter_law(std::string_view key, std::string_view unit) {
   const bool is_of_trial = key.rfind("plant.", 0) == 0 || key.rfind("run.", 0) == 0;
   return is_of_trial ? world_law(key, unit) : controller_law(key, unit);
+}
+
+std::string terrain_in_metres(const std::string& terrain, double height) {
+  static const std::regex kPercentage(R"(([0-9]+\.?[0-9]*)%)");
+  std::string text;
+  auto rest = terrain.cbegin();
+  for (std::sregex_iterator at(terrain.begin(), terrain.end(), kPercentage), end; at != end; ++at) {
+    text.append(rest, (*at)[0].first);
+    std::ostringstream metres;
+    metres << std::setprecision(4) << 0.01 * std::stod((*at)[1].str()) * height;
+    text += metres.str();
+    rest = (*at)[0].second;
+  }
+  return text.append(rest, terrain.cend());
 }
 
 Errors fit_to_robot(Config& config) {

@@ -344,6 +344,7 @@ Result<Config> load_config(const ConfigSources& sources) {
   config.controller = controller.name;
   config.profile = profile.name;
   origins["robot"] = robot.origin;
+  config.plant.terrain = terrain_in_metres(config.plant.terrain, config.body.height);
 
   for (const Error& error : validate(config)) {
     const bool known = std::any_of(errors.begin(), errors.end(),

@@ -96,8 +96,9 @@ Errors stand_robot(const mjModel& model, const RobotMap& map, const Terrain& ter
     for (const Leg leg : kLegs) {
       const int foot = map.legs[leg].foot_geom;
       if (iteration < kFreeIterations) {
-        const Vec2 below_hip = (p_WB + p_BH_W[leg]).head<2>();
-        goal[leg] << below_hip, terrain.ball_height(below_hip, model.geom_size[3 * foot]);
+        const double radius = model.geom_size[3 * foot];
+        const Vec2 below_hip = terrain.beside_edges((p_WB + p_BH_W[leg]).head<2>(), radius);
+        goal[leg] << below_hip, terrain.ball_height(below_hip, radius);
       }
       const Vec2 foothold = goal[leg].head<2>();
       mean_ground += Vec3(foothold.x(), foothold.y(), terrain.height(foothold)) / kLegCount;

@@ -226,6 +226,16 @@ double Terrain::ball_height(const Vec2& xy, double radius) const {
   return highest;
 }
 
+Vec2 Terrain::beside_edges(const Vec2& xy, double radius) const {
+  const auto* stairs = std::get_if<Stairs>(&spec_);
+  if (stairs == nullptr) return xy;
+  const Vec2 climb = climb_direction(*stairs);
+  const double along = climb.dot(xy), middle = stair_index(*stairs, along) * stairs->run;
+  constexpr double kGap = 1e-4;  // m, beside the riser
+  const double room = std::max(0.0, 0.5 * stairs->run - radius - kGap);
+  return xy + (middle + std::clamp(along - middle, -room, room) - along) * climb;
+}
+
 Vec3 Terrain::normal() const {
   const auto of_slope = [](double degrees) {
     return Vec3(-std::sin(radians(degrees)), 0.0, std::cos(radians(degrees)));

@@ -78,6 +78,9 @@ class Terrain {
   /// Height (m) of the centre of a ball of `radius` (m) that is lowered at `xy` (m) until it
   /// touches the ground.
   double ball_height(const Vec2& xy, double radius) const;
+  /// The point of the tread under `xy` (m) nearest to it on which a ball of `radius` (m) touches no
+  /// edge; `xy` itself on ground without stairs.
+  Vec2 beside_edges(const Vec2& xy, double radius) const;
 
   /// Unit normal of the overall slope, world axes; of stairs, of the plane through the middles of
   /// the treads.

@@ -35,7 +35,8 @@ struct WorldConfig {
   static void fields(Self& s, Visit&& v) {
     v(s.terrain, "terrain",
       "flat, slope:DEGREES, slope:DEGREES+rough:HEIGHT, stairs:RISExRUN, stairs:RISExRUN@DEGREES, "
-      "rough:HEIGHT, blocks:HEIGHT, patch:FRICTIONxSIDE or soft:TIME_CONSTANT; m and s.");
+      "rough:HEIGHT, blocks:HEIGHT, patch:FRICTIONxSIDE or soft:TIME_CONSTANT; m and s, or lengths "
+      "in % of body.height.");
     v(s.timestep, "timestep", "s", Range{1e-4, 5e-3}, "Physics step; divides the control period.");
     v(s.friction, "friction", "1", Range{0.0, 5.0}, "Sliding friction of feet and ground.");
     v(s.torsional_friction, "torsional_friction", "m", Range{0.0, 1.0},
