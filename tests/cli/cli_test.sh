@@ -70,6 +70,7 @@ TOML
 echo '<mujoco><worldbody>' > sandbox/broken.xml
 echo '<mujoco><worldbody><body><geom size="1"/></body></worldbody></mujoco>' > sandbox/no_legs.xml
 echo 'not XML at all' > sandbox/text.xml
+printf 'file = "no_legs.xml"\n[legs.FR]\nknee = "sideways"\n' > sandbox/sideways.toml
 
 # Command lines.
 wrong 'unknown verb "pirouet"' pirouet
@@ -128,6 +129,11 @@ wrong '--robot: given "nowhere.xml"' spin --robot nowhere.xml
 wrong 'broken.xml' spin --robot broken.xml
 wrong 'text.xml' spin --robot text.xml
 wrong 'no_legs.xml' spin --robot no_legs.xml
+
+wrong 'legs.FR.knee: given "sideways"; allowed: "backward", "forward"' spin --robot sideways.toml
+wrong 'no quadruped: no free joint' robot check no_legs.xml
+wrong 'broken.xml' robot describe broken.xml
+wrong 'check, describe, list' robot
 
 # Parameters.
 wrong 'gait.perid: unknown key; did you mean gait.period?' spin --set gait.perid=0.4
@@ -278,7 +284,7 @@ wrong 'run.rate other than 0' spin --angle 90 --rate 0
 # A run, and the same again from what it left.
 short='--turns 0.05 --set run.settle_time=0.2'
 "$program" spin $short --json > stdout 2> stderr || fail 'a short spin'
-[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'files.txt metrics.json run.toml terrain.npy trace.npy' ] || fail 'run folder'
+[ "$(ls runs/spin-flat-0.7-seed1 | xargs)" = 'files.txt metrics.json robot.xml run.toml terrain.npy trace.npy' ] || fail 'run folder'
 cmp -s stdout runs/spin-flat-0.7-seed1/metrics.json || fail '--json prints something else'
 grep -q '^100 %' stderr || fail 'no progress on stderr'
 "$program" spin --config runs/spin-flat-0.7-seed1/run.toml --out again --quiet > stdout 2> stderr ||
@@ -375,6 +381,16 @@ seed=$(sed 's/.*--seed \([0-9]*\).*/\1/' <<< "$line")
 eval "\"$program\" ${line#*pirouette } --json" > stdout 2> stderr || fail "replay: $line"
 rate=$(sed -n 's/.*"yaw_rate_mean": \([-0-9.e]*\).*/\1/p' stdout)
 grep ",$seed," drawn/table.csv | grep -q -F ",$rate," || fail "the replay differs: $line"
+
+# A robot that was described is the robot itself, to the last bit.
+"$program" robot list > stdout 2> stderr && grep -q '^go1 ' stdout || fail 'robot list'
+"$program" robot check go1 > stdout 2> stderr && grep -q 'It can walk' stdout || fail 'robot check'
+"$program" robot describe go1 > go1.toml 2> stderr || fail 'robot describe'
+for robot in "$source/robots/go1/go1.xml" go1.toml; do
+  "$program" spin --robot "$robot" --angle 20 --out "of-$(basename "$robot")" --quiet > stdout 2> stderr ||
+    fail "a spin of $robot"
+done
+cmp -s of-go1.xml/trace.npy of-go1.toml/trace.npy || fail 'robot describe gives another robot'
 
 # Programs of other packages.
 mkdir bin

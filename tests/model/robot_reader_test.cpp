@@ -13,6 +13,7 @@
 #include "pirouette/base/rotation.hpp"
 #include "pirouette/foot/leg_kinematics.hpp"
 #include "pirouette/model/robot_model.hpp"
+#include "pirouette/model/robot_text.hpp"
 #include "pirouette/model/spec_repair.hpp"
 #include "support/random_robot.hpp"
 #include "support/robot_text.hpp"
@@ -251,6 +252,18 @@ TEST_F(RobotFiles, TellOfMassesThatTheirCompilerChanges) {
   RobotModel model = model_of(
       replaced(text_of_robot(), "<worldbody>", "<compiler boundmass=\"0.1\"/><worldbody>"));
   expect_mentions(notes_of(model), "changes masses");
+}
+
+TEST_F(RobotFiles, CanBeWrittenAsMjcf) {
+  // The knees' armature and one foot of its own body whose geom weighs nothing.
+  const std::string text = replaced(
+      text_of_robot(), "<geom name=\"FR_foot\"[^>]*/>",
+      "<body name=\"toe\" pos=\"0 0 -0.2\"><geom name=\"FR_foot\" class=\"foot\"/></body>");
+  const std::string first = write(text);
+  RobotModel as_read = RobotModel::load(first).value();
+  RobotModel written = RobotModel::load(write(robot_mjcf(first).value(), "again.xml")).value();
+  EXPECT_NEAR(written.mass(), as_read.mass(), 1e-6);  // the file has six digits
+  expect_same(written, as_read, 1e-5);
 }
 
 TEST_F(RobotFiles, AreCompleteAfterReading) {

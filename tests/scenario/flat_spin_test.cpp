@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "pirouette/config/data_folders.hpp"
+#include "pirouette/config/toml.hpp"
 #include "support/trial.hpp"
 
 namespace pirouette {
@@ -82,6 +84,20 @@ TEST(SpinWithTheFootAsAPoint, TheBaselineBundleSpinsToo) {
   EXPECT_FALSE(m.fell);
   EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 1e-2);
 }
+
+class SpinOfARobotInTheBox : public testing::TestWithParam<std::string> {};
+
+TEST_P(SpinOfARobotInTheBox, StaysOnThePointWithNothingButItsName) {
+  const Config config = load_config({.robot = GetParam()}).value();
+  const Metrics m = spin({"robot=\"" + GetParam() + "\"", "run.turns=1"});
+  EXPECT_FALSE(m.fell);
+  EXPECT_LE(std::abs(m.yaw_rate_error.value_or(1.0)), 2e-3);
+  // Twice what the worst of them does in three turns.
+  EXPECT_LE(m.com.distance_to_point_mean_mm.value_or(1e9), 0.004 * 1e3 * config.body.height);
+}
+
+INSTANTIATE_TEST_SUITE_P(Known, SpinOfARobotInTheBox, testing::ValuesIn(known_robots()),
+                         [](const auto& robot) { return robot.param; });
 
 TEST(SpinOfAnotherRobot, NeedsNothingButTheHeightOfItsCentreOfMass) {
   for (const double rate : {0.7, -2.0}) {

@@ -223,8 +223,11 @@ Result<JointRoles> find_legs(const mjModel& m, const mjData& d, const RobotDescr
   JointRoles roles;
   roles.trunk = find_trunk(m);
   if (roles.trunk < 0) {
-    return Error{given.file, 0, "",
-                 "no free joint and no body that could have one: " + list_joints(m)};
+    return Error{
+        given.file, 0, "",
+        "no quadruped: no free joint, and no body with legs that could have one; joints of "
+        "this file: " +
+            list_joints(m)};
   }
   const std::vector<Limb> limbs = limbs_of(m, roles.trunk);
   if (given.legs[Leg::kFR].joints[0].empty()) {

@@ -462,6 +462,9 @@ Result<std::string> robot_mjcf(const RobotDescription& given) {
   const fs::path folder = fs::absolute(given.file).parent_path();
   for (mjString* place : {spec.compiler.meshdir, spec.compiler.texturedir})
     mjs_setString(place, (folder / mjs_getString(place)).lexically_normal().c_str());
+  for_each(spec, mjOBJ_GEOM, [](mjsElement* e) {  // saving forgets that a geom weighs nothing
+    if (mjs_asGeom(e)->mass == 0.0) mjs_asGeom(e)->density = 0.0;
+  });
   std::string joints;
   for (const LegDescription& leg : robot.value().description.legs) {
     for (const std::string& joint : leg.joints) joints += (joints.empty() ? "" : ";") + joint;
