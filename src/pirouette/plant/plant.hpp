@@ -35,7 +35,8 @@ class Plant {
   /// the terrain's text, the start beyond its edge, times that are no whole number of steps.
   static Errors check(const WorldConfig& config, const PlantSetup& setup);
 
-  /// Builds config.terrain with the robot standing on it, feet vertically below the hips. The
+  /// Builds config.terrain with the robot standing on it, feet vertically below the hips, on
+  /// stairs beside the risers. The
   /// errors name the robot's file, the terrain, or the leg that cannot reach the ground.
   static Result<Plant> create(const WorldConfig& config, const PlantSetup& setup);
 
