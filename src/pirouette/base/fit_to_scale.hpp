@@ -41,9 +41,11 @@ inline double scaled(double value, const UnitLaw& law, double length, double mas
 template <class LawOf>
 class FitToScale {
  public:
+  /// Keys begin with `prefix`; lengths are `length` times and masses `mass` times as large.
   FitToScale(std::string prefix, double length, double mass, const LawOf& law_of)
       : prefix_(std::move(prefix)), length_(length), mass_(mass), law_of_(law_of) {}
 
+  /// Scales a number, or each of a list.
   template <class T>
   void operator()(T& value, const std::string& name, const char* unit, Range range,
                   const char* /*meaning*/) const {
@@ -56,6 +58,7 @@ class FitToScale {
     }
   }
 
+  /// Enters a group of parameters; leaves any other value.
   template <class T>
   void operator()(T& value, const std::string& name, const char* /*meaning*/) const {
     if constexpr (std::is_class_v<T> && !std::is_same_v<T, std::string>)
